@@ -1,0 +1,1 @@
+"""How wave amplitudes yield: admittance law and external torque."""

@@ -1,0 +1,1 @@
+"""Choosing gaits: calibration of angle over amplitude, and what stands on it."""

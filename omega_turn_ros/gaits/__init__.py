@@ -1,0 +1,1 @@
+"""What the joints do: pure functions of phase and amplitude."""

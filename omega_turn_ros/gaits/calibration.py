@@ -1,0 +1,128 @@
+"""What a gait turns: heading over amplitude scale and phase, as tables that interpolate."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from omega_turn_ros.errors import BadInputError
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Calibration:
+    """Predicted heading of the mean body axis for one gait on one robot.
+
+    A cycle starts at `start_phase`, where the body is straightest. From the rest shape (straight)
+    to the start shape and back is the same line in shape space, so bending costs what unbending
+    returns.
+
+    Attributes:
+        start_phase: gait phase at which cycles begin and end [rad].
+        scales: amplitude scales 0..1, shape (S,).
+        heading: heading since the start of the cycle [rad], shape (S, M + 1), at phases
+            start_phase + 2 pi m / M; the last column is the angle per cycle.
+        bend_heading: heading change from rest to the start shape [rad], shape (S,).
+        peak_rate: largest |d theta_i / d phase| over the cycle at scale 1 [rad/rad].
+        n_joints: N of the robot it was computed for.
+    """
+
+    start_phase: float
+    scales: Array
+    heading: Array
+    bend_heading: Array
+    peak_rate: float
+    n_joints: int
+
+    def __post_init__(self) -> None:
+        """Refuse tables that do not fit together."""
+        count = self.scales.size
+        if count < 2 or self.scales[0] != 0.0 or (np.diff(self.scales) <= 0.0).any():
+            raise BadInputError('calibration scales', self.scales.tolist(), '0 < ... rising')
+        if self.heading.ndim != 2 or self.heading.shape[0] != count:
+            raise BadInputError('calibration heading', self.heading.shape, f'({count}, phases)')
+        if self.bend_heading.shape != (count,):
+            raise BadInputError('calibration bend_heading', self.bend_heading.shape, f'({count},)')
+        if not all(np.isfinite(a).all() for a in (self.heading, self.bend_heading)):
+            raise BadInputError('calibration', 'NaN or Inf', 'finite headings [rad]')
+        if self.largest_angle <= 0.0:
+            raise BadInputError('calibration heading', self.largest_angle, 'an angle > 0 [rad]')
+
+    @property
+    def angles(self) -> Array:
+        """Angle per cycle for each scale, made monotone [rad], shape (S,)."""
+        monotone: Array = np.maximum.accumulate(self.heading[:, -1])
+        return monotone
+
+    @property
+    def largest_angle(self) -> float:
+        """Angle of one cycle at full amplitude [rad]."""
+        return float(self.angles[-1])
+
+    def angle_of(self, scale: float) -> float:
+        """Angle per cycle at a signed scale in -1..1 [rad]; odd in the scale (mirrored turn)."""
+        return float(np.sign(scale) * np.interp(abs(scale), self.scales, self.angles))
+
+    def scale_of(self, angle: float) -> float:
+        """Signed scale whose cycle turns by `angle` [rad], at most the largest angle."""
+        size = abs(angle)
+        k = int(np.clip(np.searchsorted(self.angles, size, side='left'), 1, self.scales.size - 1))
+        low, high = self.angles[k - 1], self.angles[k]
+        fraction = (size - low) / (high - low) if high > low else 1.0
+        scale = self.scales[k - 1] + fraction * (self.scales[k] - self.scales[k - 1])
+        return float(np.copysign(np.clip(scale, 0.0, self.scales[-1]), angle))
+
+    def heading_at(self, scale: float, turned: float) -> float:
+        """Heading since the start of a cycle [rad] after `turned` of phase, 0..2 pi [rad]."""
+        row, weight = self._bracket(abs(scale))
+        columns = self.heading.shape[1] - 1
+        place = min(max(turned / (2.0 * np.pi), 0.0), 1.0) * columns
+        j = min(int(place), columns - 1)
+        block = self.heading[row : row + 2, j : j + 2]
+        along = block[:, 0] + (place - j) * (block[:, 1] - block[:, 0])
+        return float(np.sign(scale) * (along[0] + weight * (along[1] - along[0])))
+
+    def bend_heading_of(self, scale: float) -> float:
+        """Heading change from rest to the start shape at a signed scale [rad]."""
+        return float(np.sign(scale) * np.interp(abs(scale), self.scales, self.bend_heading))
+
+    def _bracket(self, scale: float) -> tuple[int, float]:
+        row = int(np.clip(np.searchsorted(self.scales, scale) - 1, 0, self.scales.size - 2))
+        low, high = self.scales[row], self.scales[row + 1]
+        return row, float(np.clip((scale - low) / (high - low), 0.0, 1.0))
+
+    def to_mapping(self) -> dict[str, Any]:
+        """Plain lists for a YAML file, angles rounded to 1e-6 rad."""
+        return {
+            'n_joints': self.n_joints,
+            'start_phase': round(self.start_phase, 9),
+            'peak_rate': round(self.peak_rate, 6),
+            'scales': [round(float(s), 6) for s in self.scales],
+            'bend_heading': [round(float(h), 6) for h in self.bend_heading],
+            'heading': [[round(float(h), 6) for h in row] for row in self.heading],
+        }
+
+
+def calibration_from_mapping(data: dict[str, Any]) -> Calibration:
+    """Build a calibration from a gait file's `calibration` block.
+
+    Raises:
+        BadInputError: a field is missing, has the wrong type, or the tables do not fit.
+    """
+    try:
+        return Calibration(
+            float(data['start_phase']),
+            np.array(data['scales'], float),
+            np.array(data['heading'], float),
+            np.array(data['bend_heading'], float),
+            float(data['peak_rate']),
+            int(data['n_joints']),
+        )
+    except (KeyError, TypeError, ValueError) as error:
+        if isinstance(error, BadInputError):
+            raise
+        raise BadInputError('calibration', type(error).__name__, f'complete tables ({error})') from error

@@ -1,0 +1,335 @@
+"""The turning controller as one pure step: (state, inputs, dt) -> (state, command).
+
+A turn is a chain of two kinds of motion. A *move* runs straight through joint space with a
+minimum-jerk time law; a *cycle* plays one period of the gait. From rest: move to the gait's start
+shape, whole cycles, move back to rest. Every move's speed is bounded by its duration and every
+cycle's by its period, so limits hold by construction; `limit_command` enforces them once more.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from omega_turn_ros.errors import BadInputError
+from omega_turn_ros.gaits.controller_state import (
+    ControllerConfig,
+    ControllerState,
+    Inputs,
+    Mode,
+    Output,
+)
+from omega_turn_ros.gaits.library import LibraryGait
+from omega_turn_ros.gaits.limits import JointLimits, limit_command
+from omega_turn_ros.gaits.move import move_between
+from omega_turn_ros.gaits.turn_plan import plan_turn
+from omega_turn_ros.robot import Robot
+
+Array = NDArray[np.float64]
+
+AT_REST = 1e-3  # [rad] from the rest shape: nothing to unbend
+SAME_SHAPE = 1e-4  # [rad] between start shapes: no move needed
+NEGLIGIBLE_TURN = 1e-6  # [rad]
+GATE_TIME = 0.5  # [s] over which a cycle lets amplitude offsets in
+SETTLE_TIME = 0.3  # [s] the robot lags its command before the heading is judged
+RATIO_RANGE = (0.3, 3.0)  # of measured to predicted angle per cycle worth believing
+JUDGED_FROM = 0.005  # [rad] predicted; a smaller cycle says nothing
+LEARNED_FROM = 0.5  # [rad] predicted; small cycles turn otherwise than large ones
+
+
+class GaitController:
+    """Plays turns of one gait on one robot. Holds constants only; the state is passed through.
+
+    Args:
+        robot: joint names, axes and limits.
+        gait: gait with its calibration.
+        config: settings.
+        limits: of every command.
+        unbend_heading: heading change [rad] from straightening a posture of yaw angles [rad],
+            shape (N,), along a straight line in joint space.
+
+    Raises:
+        BadInputError: the gait does not fit the robot or its limits.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        gait: LibraryGait,
+        config: ControllerConfig,
+        limits: JointLimits,
+        unbend_heading: Callable[[Array], float],
+    ) -> None:
+        if gait.calibration.n_joints != robot.n_yaw:
+            raise BadInputError('gait', gait.name, f'a gait calibrated for N = {robot.n_yaw}')
+        if gait.theta_max > limits.position + 1e-9:
+            raise BadInputError('gait', gait.name, f'joint angles within {limits.position} rad')
+        self.robot, self.gait, self.config, self.limits = robot, gait, config, limits
+        self._unbend_heading = unbend_heading
+        self._yaw = robot.yaw_indices
+        # Without feedback the prediction closes exactly; what is left is rounding.
+        self._tolerance = config.heading_tolerance if config.heading_feedback else 1e-3
+        self._cycle_rate = 2.0 * math.pi / config.period
+        shortest = shortest_period(gait, limits.velocity)
+        if config.period < shortest:
+            raise BadInputError('period', config.period, f'at least {shortest:.3g} s')
+
+    def initial_state(self) -> ControllerState:
+        """State before the first joint states arrive."""
+        return ControllerState()
+
+    def request_turn(self, state: ControllerState, angle: float) -> ControllerState:
+        """Take over a new turn, relative to the present heading; 0 ends the turn.
+
+        Raises:
+            BadInputError: the angle is not finite, or the controller is stopped.
+        """
+        if not math.isfinite(angle):
+            raise BadInputError('turn_angle', angle, 'a finite angle [rad]')
+        if state.mode is Mode.STOPPED:
+            raise BadInputError('turn_angle', angle, 'no command while stopped: call reset first')
+        goal = None if abs(angle) < NEGLIGIBLE_TURN else angle
+        budget = 3 * plan_turn(angle, self.gait.calibration).cycles + self.config.max_corrections
+        state = replace(
+            state,
+            goal=goal,
+            heading=state.heading.restarted(),
+            ratio=state.ground_ratio,
+            cycles=0,
+            budget=budget,
+            shortfall=0.0,
+        )
+        if state.mode is Mode.WAITING:
+            return state
+        if state.mode is Mode.CYCLING and goal is not None and self._helps(state, goal):
+            return replace(state, cycle_start=-self._cycle_progress(state))
+        if state.mode is Mode.MOVING and not state.to_cycle:
+            return state  # already on the way to rest, where the new turn is planned
+        return self._move_to_rest(state)
+
+    def stop(self, state: ControllerState) -> ControllerState:
+        """Freeze the command where it is and drop the turn; latched until `reset`."""
+        return replace(state, mode=Mode.STOPPED, goal=None, move=None, phase_rate=0.0)
+
+    def reset(self, state: ControllerState) -> ControllerState:
+        """Leave the stop. Moves nothing: the posture is held until the next turn."""
+        if state.mode is not Mode.STOPPED:
+            return state
+        return replace(state, mode=Mode.WAITING if state.command is None else Mode.HOLDING)
+
+    def step(
+        self, state: ControllerState, inputs: Inputs, dt: float
+    ) -> tuple[ControllerState, Output | None]:
+        """Advance by dt [s] >= 0. Returns no output until joint states have been seen."""
+        if state.command is None:
+            if inputs.positions is None:
+                return state, None
+            state = self._start(state, inputs.positions)
+        state = self._take_offsets(state, inputs.offsets, dt)
+        state, running = self._check_robot(state, inputs, dt)
+        target, predicted = state.command, 0.0
+        if running and state.mode is Mode.MOVING:
+            state, target, predicted = self._step_move(state, dt)
+        elif running and state.mode is Mode.CYCLING:
+            state, target, predicted = self._step_cycle(state, dt)
+        elif state.mode is Mode.CYCLING:
+            state = replace(state, phase_rate=0.0)
+        measured = inputs.heading if self.config.heading_feedback else None
+        state = replace(state, heading=state.heading.advanced(predicted, measured))
+        if running:
+            state = self._next_motion(state, dt)
+        return self._command(state, target, dt)
+
+    def _start(self, state: ControllerState, positions: Array) -> ControllerState:
+        limit = self.limits.position
+        state = replace(state, command=np.clip(positions, -limit, limit))
+        if state.mode is Mode.STOPPED:
+            return state
+        state = replace(state, mode=Mode.HOLDING)
+        return state if state.goal is None else self._move_to_rest(state)
+
+    def _take_offsets(
+        self, state: ControllerState, wanted: tuple[float, float], dt: float
+    ) -> ControllerState:
+        if wanted == state.offsets:
+            return state
+        limit, reach = self.config.offset_limit, self.config.offset_rate * dt
+        f, t = (
+            old + min(max(min(max(new, -limit), limit) - old, -reach), reach)
+            for old, new in zip(state.offsets, wanted)
+        )
+        return replace(state, offsets=(f, t))
+
+    def _check_robot(
+        self, state: ControllerState, inputs: Inputs, dt: float
+    ) -> tuple[ControllerState, bool]:
+        """Pause while joint states are stale, and until the robot is back at the command."""
+        if not inputs.fresh or inputs.positions is None:
+            return replace(state, catching_up=0.0), False
+        if state.catching_up is None:
+            return state, True
+        waited = state.catching_up + dt
+        error = float(np.abs(inputs.positions - state.command).max())
+        if error <= self.config.catch_up_tolerance or waited >= self.config.catch_up_time:
+            return replace(state, catching_up=None), True
+        return replace(state, catching_up=waited), False
+
+    def _step_move(
+        self, state: ControllerState, dt: float
+    ) -> tuple[ControllerState, Array | None, float]:
+        if state.move is None:
+            return state, state.command, 0.0
+        move, heading_change = state.move.advanced(dt)
+        return replace(state, move=move), move.position, heading_change
+
+    def _step_cycle(
+        self, state: ControllerState, dt: float
+    ) -> tuple[ControllerState, Array, float]:
+        left = 2.0 * math.pi - state.turned
+        acceleration = self._cycle_rate / self.config.phase_ramp_time
+        rate = min(state.phase_rate + acceleration * dt, self._cycle_rate)
+        # The floor carries the phase over the end, where the braking law alone would creep.
+        braking = max(math.sqrt(2.0 * acceleration * left), 0.05 * self._cycle_rate)
+        rate = min(rate, braking)
+        turned = min(state.turned + rate * dt, 2.0 * math.pi)
+        gate = min(state.gate + dt / GATE_TIME, 1.0)
+        table = self.gait.calibration
+        predicted = table.heading_at(state.scale, turned) - table.heading_at(
+            state.scale, state.turned
+        )
+        state = replace(state, turned=turned, phase_rate=rate, gate=gate)
+        return state, self._posture(state), predicted * state.ratio
+
+    def _posture(self, state: ControllerState) -> Array:
+        """Joint angles of the cycle at the state's phase, pitch joints straight."""
+        posture = np.zeros(self.robot.n_joints)
+        offsets = (state.gate * state.offsets[0], state.gate * state.offsets[1])
+        phase = self.gait.calibration.start_phase + state.turned
+        posture[self._yaw] = self.gait.gait.angles(phase, self._yaw.size, state.scale, offsets)
+        return posture
+
+    def _next_motion(self, state: ControllerState, dt: float) -> ControllerState:
+        """Go from one motion to the next where one has ended."""
+        if state.mode is Mode.MOVING and (state.move is None or state.move.done):
+            if state.to_cycle:
+                return replace(
+                    state,
+                    mode=Mode.CYCLING,
+                    turned=0.0,
+                    phase_rate=0.0,
+                    gate=0.0,
+                    cycle_start=state.heading.progress,
+                )
+            settled = state.settling + dt
+            if state.cycles and self.config.heading_feedback and settled < SETTLE_TIME:
+                return replace(state, settling=settled)
+            return self._plan_from_rest(replace(state, mode=Mode.HOLDING, move=None))
+        if state.mode is Mode.CYCLING and state.turned >= 2.0 * math.pi:
+            return self._end_cycle(state)
+        return state
+
+    def _plan_from_rest(self, state: ControllerState) -> ControllerState:
+        if state.goal is None:
+            return state
+        close = abs(state.remaining) <= self._tolerance
+        if state.cycles and (close or state.cycles >= state.budget):
+            return replace(state, goal=None, shortfall=state.remaining)
+        scale = plan_turn(state.remaining, self.gait.calibration, state.ratio).scale
+        return self._move_to_start(state, scale, 0.0)
+
+    def _end_cycle(self, state: ControllerState) -> ControllerState:
+        """Judge the cycle, then choose the next one or the way back to rest."""
+        state = self._judge_cycle(state)
+        bend = self.gait.calibration.bend_heading_of(state.scale)
+        rest = (state.remaining + bend) if state.goal is not None else 0.0
+        if abs(rest) <= self._tolerance or state.cycles >= state.budget:
+            return self._move_to_rest(state)
+        scale = plan_turn(rest, self.gait.calibration, state.ratio).scale
+        return self._move_to_start(state, scale, bend)
+
+    def _judge_cycle(self, state: ControllerState) -> ControllerState:
+        """Compare the angle of the cycle with the prediction."""
+        state = replace(state, cycles=state.cycles + 1)
+        predicted = self.gait.calibration.angle_of(state.scale)
+        if not self.config.heading_feedback or abs(predicted) < JUDGED_FROM:
+            return state
+        measured = state.heading.progress - state.cycle_start
+        ratio = 0.5 * (state.ratio + measured / predicted)
+        ratio = min(max(ratio, RATIO_RANGE[0]), RATIO_RANGE[1])
+        learned = ratio if abs(predicted) >= LEARNED_FROM else state.ground_ratio
+        return replace(state, ratio=ratio, ground_ratio=learned)
+
+    def _move_to_start(
+        self, state: ControllerState, scale: float, bend_now: float
+    ) -> ControllerState:
+        """Move along one line in shape space to the start shape at `scale`."""
+        shape = replace(state, scale=scale, turned=0.0, gate=0.0)
+        target = self._posture(shape)
+        bend = self.gait.calibration.bend_heading_of(scale) - bend_now
+        command = self._known(state)
+        if np.abs(target - command).max() < SAME_SHAPE:
+            return replace(
+                state,
+                mode=Mode.CYCLING,
+                scale=scale,
+                turned=0.0,
+                cycle_start=state.heading.progress,
+            )
+        move = move_between(command, target, self._move_velocity(), bend)
+        return replace(
+            state, mode=Mode.MOVING, move=move, to_cycle=True, scale=scale, phase_rate=0.0
+        )
+
+    def _move_to_rest(self, state: ControllerState) -> ControllerState:
+        command = self._known(state)
+        heading_change = 0.0
+        if np.abs(command[self._yaw]).max() > AT_REST:
+            heading_change = self._unbend_heading(command[self._yaw])
+        move = move_between(
+            command, np.zeros_like(command), self._move_velocity(), heading_change
+        )
+        return replace(
+            state, mode=Mode.MOVING, move=move, to_cycle=False, phase_rate=0.0, settling=0.0
+        )
+
+    def _helps(self, state: ControllerState, goal: float) -> bool:
+        """Whether finishing the cycle under way leads towards the new goal, not past it."""
+        table = self.gait.calibration
+        rest = table.angle_of(state.scale) - table.heading_at(state.scale, state.turned)
+        rest = rest * state.ratio - table.bend_heading_of(state.scale)
+        return 0.0 <= rest / goal <= 1.0
+
+    def _cycle_progress(self, state: ControllerState) -> float:
+        table = self.gait.calibration
+        return table.heading_at(state.scale, state.turned) * state.ratio
+
+    def _move_velocity(self) -> float:
+        return min(self.config.move_velocity, 0.9 * self.limits.velocity)
+
+    def _known(self, state: ControllerState) -> Array:
+        if state.command is None:
+            raise BadInputError('command', None, 'joint states before any motion')
+        return state.command
+
+    def _command(
+        self, state: ControllerState, target: Array | None, dt: float
+    ) -> tuple[ControllerState, Output]:
+        previous = self._known(state)
+        wanted = previous if target is None else target
+        command, limited = limit_command(previous, wanted, dt, self.limits)
+        velocity = (command - previous) / dt if dt > 0.0 else np.zeros_like(command)
+        state = replace(state, command=command, limited=state.limited + limited)
+        cycling = state.mode is Mode.CYCLING
+        phase = self.gait.calibration.start_phase + (state.turned if cycling else 0.0)
+        tau_f, tau_t = phase - self.gait.gait.psi, phase
+        rate = state.phase_rate if cycling else 0.0
+        return state, Output(command, velocity, tau_f, tau_t, rate)
+
+
+def shortest_period(gait: LibraryGait, velocity_limit: float) -> float:
+    """Shortest cycle whose peak joint speed keeps the limit [s], for a limit in [rad/s]."""
+    return 2.0 * math.pi * gait.calibration.peak_rate / velocity_limit

@@ -1,0 +1,77 @@
+"""The gait library: named gaits with their calibration, one YAML file each in config/gaits."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from omega_turn_ros.errors import BadInputError
+from omega_turn_ros.gaits.calibration import Calibration, calibration_from_mapping
+from omega_turn_ros.gaits.two_wave import TwoWaveGait
+from omega_turn_ros.resources import config_names, read_config
+
+
+@dataclass(frozen=True, slots=True)
+class LibraryGait:
+    """A gait that can be planned with.
+
+    Attributes:
+        name: file stem in config/gaits.
+        description: one line for people.
+        robot: name of the robot it is calibrated for.
+        theta_max: largest joint angle over the cycle at scale 1 [rad].
+        gait: the waves. Scale +1 turns counter-clockwise.
+        calibration: angle over amplitude scale and phase.
+    """
+
+    name: str
+    description: str
+    robot: str
+    theta_max: float
+    gait: TwoWaveGait
+    calibration: Calibration
+
+
+def gait_names() -> list[str]:
+    """Names of the shipped gaits."""
+    return config_names('gaits')
+
+
+def load_gait(name: str) -> LibraryGait:
+    """Read a gait from `config/gaits/<name>.yaml` or from a path ending in `.yaml`.
+
+    Raises:
+        BadInputError: the file is missing, or a field is missing, unknown or out of range.
+    """
+    data = read_config('gaits', name)
+    expected = {'name', 'description', 'kind', 'robot', 'theta_max', 'parameters', 'calibration'}
+    if set(data) != expected:
+        odd = sorted(set(data) ^ expected)
+        raise BadInputError(f'gait {name}', odd, f'exactly the fields {sorted(expected)}')
+    if data['kind'] != 'two_wave':
+        raise BadInputError('gait kind', data['kind'], "'two_wave'")
+    parameters = data['parameters']
+    fields = set(TwoWaveGait.__slots__)
+    if not isinstance(parameters, dict) or set(parameters) != fields:
+        raise BadInputError('gait parameters', parameters, f'exactly the fields {sorted(fields)}')
+    return LibraryGait(
+        str(data['name']),
+        str(data['description']),
+        str(data['robot']),
+        float(data['theta_max']),
+        TwoWaveGait(**parameters),
+        calibration_from_mapping(data['calibration']),
+    )
+
+
+def gait_to_mapping(entry: LibraryGait) -> dict[str, Any]:
+    """Return what `load_gait` reads back."""
+    return {
+        'name': entry.name,
+        'description': entry.description,
+        'kind': 'two_wave',
+        'robot': entry.robot,
+        'theta_max': round(entry.theta_max, 9),
+        'parameters': {k: round(v, 9) for k, v in asdict(entry.gait).items()},
+        'calibration': entry.calibration.to_mapping(),
+    }

@@ -1,0 +1,1 @@
+"""What the ground answers: kinematics and quasi-static force balance of planar chains."""

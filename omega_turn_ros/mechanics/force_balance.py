@@ -1,0 +1,189 @@
+"""Quasi-static body velocity under kinetic Coulomb friction (Sec. IV.A: F = -mu v/|v|).
+
+Friction forces balance exactly where the dissipation sum_j w_j |v_j| is smallest over the body
+velocity: three unknowns, convex. Newton's method on the norm smoothed by epsilon, with epsilon
+lowered in steps and each step started from the last (own derivation).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from omega_turn_ros.errors import ConvergenceError
+from omega_turn_ros.mechanics.chain import PlanarChain, ShapeState
+
+Array = NDArray[np.float64]
+
+# Relative to the mean shape speed. The last value bounds the error of a sticking point's force.
+SMOOTHING = (1.0, 0.1, 1e-2, 1e-3, 1e-4, 1e-5)
+NEWTON_STEPS = 25
+GRADIENT_TOLERANCE = 1e-8  # relative to mu times the weight
+
+
+def body_velocity(chain: PlanarChain, angles: ArrayLike, rates: ArrayLike) -> Array:
+    """Velocity of the mean body frame that balances friction force and torque.
+
+    Independent of the friction coefficient (uniform, isotropic) and linear in a common factor on
+    `rates`.
+
+    Args:
+        chain: the robot.
+        angles: yaw joint angles [rad], shape (..., N).
+        rates: their time derivatives [rad/s], shape (..., N).
+
+    Returns:
+        [xi_x, xi_y, xi_theta] in the mean body frame [m/s, m/s, rad/s], shape (..., 3).
+
+    Raises:
+        ConvergenceError: Newton's method stopped short of the tolerance.
+    """
+    angles, rates = np.broadcast_arrays(np.asarray(angles, float), np.asarray(rates, float))
+    batch = angles.shape[:-1]
+    state = chain.state(angles.reshape(-1, chain.n_joints), rates.reshape(-1, chain.n_joints))
+    velocity = solve_balance(state.points, state.velocities, chain.normal_forces)
+    return velocity.reshape(*batch, 3)
+
+
+def solve_balance(points: Array, velocities: Array, weights: Array) -> Array:
+    """Minimise sum_j w_j |v_j + xi_xy + xi_theta z x p_j| over xi for each of B shapes.
+
+    Args:
+        points: [m], shape (B, P, 2).
+        velocities: at xi = 0 [m/s], shape (B, P, 2).
+        weights: friction strengths, any unit, shape (P,).
+
+    Returns:
+        xi, shape (B, 3).
+
+    Raises:
+        ConvergenceError: Newton's method stopped short of the tolerance.
+    """
+    speed = np.einsum('j,bjx->b', weights / weights.sum(), np.abs(velocities))
+    moving = speed > 0.0
+    xi = np.zeros((points.shape[0], 3))
+    if not moving.any():
+        return xi
+    # Unit speed and unit body size make one tolerance fit every shape.
+    size = float(np.abs(points).max())
+    p = points[moving] / size
+    v = velocities[moving] / speed[moving, None, None]
+    w = weights / weights.sum()
+    solution = np.zeros((p.shape[0], 3))
+    for epsilon in SMOOTHING:
+        solution = _newton(p, v, w, solution, epsilon)
+    xi[moving] = solution * speed[moving, None]
+    xi[moving, 2] /= size
+    return xi
+
+
+def _newton(p: Array, v: Array, w: Array, xi: Array, epsilon: float) -> Array:
+    """Damped Newton from `xi` for every shape at one smoothing length."""
+    xi = xi.copy()
+    open_ = np.arange(xi.shape[0])
+    for _ in range(NEWTON_STEPS):
+        gradient, hessian = _derivatives(p[open_], v[open_], w, xi[open_], epsilon)
+        unfinished = np.abs(gradient).max(axis=1) > GRADIENT_TOLERANCE
+        open_ = open_[unfinished]
+        if open_.size == 0:
+            return xi
+        step = np.linalg.solve(hessian[unfinished], -gradient[unfinished][..., None])[..., 0]
+        xi[open_] = _line_search(p[open_], v[open_], w, xi[open_], step, epsilon)
+    gradient, _ = _derivatives(p[open_], v[open_], w, xi[open_], epsilon)
+    worst = float(np.abs(gradient).max())
+    # Near the end rounding in the objective, not the optimum, can stop the line search.
+    if worst > 1e3 * GRADIENT_TOLERANCE:
+        raise ConvergenceError(f'force balance: residual {worst:.2g} of the friction force')
+    return xi
+
+
+def _slip(p: Array, v: Array, xi: Array) -> Array:
+    """Velocity of every point once the body moves with xi, shape (B, P, 2)."""
+    turn = xi[:, 2, None, None] * np.stack([-p[..., 1], p[..., 0]], axis=-1)
+    return v + xi[:, None, :2] + turn
+
+
+def _dissipation(p: Array, v: Array, w: Array, xi: Array, epsilon: float) -> Array:
+    slip = _slip(p, v, xi)
+    return np.sqrt((slip**2).sum(axis=-1) + epsilon**2) @ w
+
+
+def _derivatives(
+    p: Array, v: Array, w: Array, xi: Array, epsilon: float
+) -> tuple[Array, Array]:
+    """Gradient (B, 3) and Hessian (B, 3, 3) of the smoothed dissipation."""
+    slip = _slip(p, v, xi)
+    norm = np.sqrt((slip**2).sum(axis=-1) + epsilon**2)
+    x, y = p[..., 0], p[..., 1]
+    unit = slip / norm[..., None]
+    ux, uy = unit[..., 0], unit[..., 1]
+    lever = x * uy - y * ux  # (z x p) . unit
+    gradient = np.stack([ux @ w, uy @ w, lever @ w], axis=-1)
+    k = w / norm
+    columns = ((1.0, 0.0, ux, -y), (0.0, 1.0, uy, x))
+    hessian = np.empty((p.shape[0], 3, 3))
+    (xx, xy, xu, xt), (_, yy, yu, yt) = columns
+    entries = (
+        (0, 0, xx - xu * xu),
+        (0, 1, xy - xu * yu),
+        (1, 1, yy - yu * yu),
+        (0, 2, xt - ux * lever),
+        (1, 2, yt - uy * lever),
+        (2, 2, x * x + y * y - lever * lever),
+    )
+    for i, j, entry in entries:
+        hessian[:, i, j] = hessian[:, j, i] = (k * entry).sum(axis=-1)
+    return gradient, hessian
+
+
+def _line_search(
+    p: Array, v: Array, w: Array, xi: Array, step: Array, epsilon: float
+) -> Array:
+    """Halve each step until the dissipation does not grow."""
+    before = _dissipation(p, v, w, xi, epsilon)
+    factor = np.ones(xi.shape[0])
+    for _ in range(30):
+        trial = xi + factor[:, None] * step
+        worse = _dissipation(p, v, w, trial, epsilon) > before * (1.0 + 1e-15)
+        if not worse.any():
+            return trial
+        factor[worse] *= 0.5
+    return xi + factor[:, None] * step
+
+
+def joint_torques(
+    chain: PlanarChain, angles: ArrayLike, rates: ArrayLike, friction: float
+) -> Array:
+    """Actuator torque each yaw joint needs against ground friction in quasi-static motion.
+
+    tau_i + sum over the points behind joint i of (p_j - q_i) x f_j = 0, where
+    f_j = -mu N_j v_j/|v_j| (own derivation from the torque balance of Sec. IV.A).
+
+    Args:
+        chain: the robot, whose weight scales the result.
+        angles: yaw joint angles [rad], shape (..., N).
+        rates: their time derivatives [rad/s], shape (..., N).
+        friction: kinetic friction coefficient mu.
+
+    Returns:
+        Torques on the link behind each joint, + = counter-clockwise [N m], shape (..., N).
+    """
+    angles, rates = np.broadcast_arrays(np.asarray(angles, float), np.asarray(rates, float))
+    flat_shape = (-1, chain.n_joints)
+    state = chain.state(angles.reshape(flat_shape), rates.reshape(flat_shape))
+    xi = solve_balance(state.points, state.velocities, chain.normal_forces)
+    torque = _torques_of_slip(chain, state, _slip(state.points, state.velocities, xi), friction)
+    return torque.reshape(angles.shape)
+
+
+def _torques_of_slip(chain: PlanarChain, state: ShapeState, slip: Array, mu: float) -> Array:
+    speed = np.sqrt((slip**2).sum(axis=-1))
+    scale = np.maximum(speed, SMOOTHING[-1] * np.maximum(speed.max(axis=-1, keepdims=True), 1e-12))
+    force = -mu * chain.normal_forces[:, None] * slip / scale[..., None]
+    behind = chain.link_of_point[None, :] > np.arange(chain.n_joints)[:, None]  # (N, P)
+    moment = state.points[..., 0] * force[..., 1] - state.points[..., 1] * force[..., 0]
+    about_origin = moment @ behind.T
+    force_behind = np.einsum('np,bpx->bnx', behind, force)
+    shift = state.joints[..., 0] * force_behind[..., 1] - state.joints[..., 1] * force_behind[..., 0]
+    result: Array = -(about_origin - shift)
+    return result

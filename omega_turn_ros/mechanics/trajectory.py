@@ -1,0 +1,66 @@
+"""Where a path through shape space takes the body (eq:lineintegral, nonlinear force balance)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from omega_turn_ros.mechanics.chain import PlanarChain
+from omega_turn_ros.mechanics.force_balance import body_velocity
+
+Array = NDArray[np.float64]
+
+
+def heading_along(chain: PlanarChain, path: ArrayLike) -> Array:
+    """Heading of the mean body axis along a path of shapes, 0 at its start.
+
+    Rate-independent: only the sequence of shapes counts. Midpoint rule, so the error falls with
+    the square of the step.
+
+    Args:
+        chain: the robot.
+        path: yaw joint angles [rad], shape (..., T, N), T >= 2.
+
+    Returns:
+        Heading [rad], shape (..., T).
+    """
+    shapes = np.asarray(path, float)
+    step = np.diff(shapes, axis=-2)
+    turn = body_velocity(chain, shapes[..., :-1, :] + 0.5 * step, step)[..., 2]
+    heading = np.zeros(shapes.shape[:-1])
+    np.cumsum(turn, axis=-1, out=heading[..., 1:])
+    return heading
+
+
+def pose_along(chain: PlanarChain, path: ArrayLike) -> Array:
+    """Pose of the mean body frame along one path of shapes, starting at the origin.
+
+    Each step is an exact SE(2) motion with constant body velocity.
+
+    Args:
+        chain: the robot.
+        path: yaw joint angles [rad], shape (T, N), T >= 2.
+
+    Returns:
+        x [m], y [m], heading [rad] in the world, shape (T, 3).
+    """
+    shapes = np.asarray(path, float)
+    step = np.diff(shapes, axis=0)
+    twists = body_velocity(chain, shapes[:-1] + 0.5 * step, step)
+    pose = np.zeros((shapes.shape[0], 3))
+    for i, (vx, vy, turn) in enumerate(twists):
+        # sinc forms stay exact as the turn goes to zero
+        a = np.sinc(turn / np.pi)
+        b = 0.5 * turn * np.sinc(0.5 * turn / np.pi) ** 2
+        c, s = np.cos(pose[i, 2]), np.sin(pose[i, 2])
+        dx, dy = a * vx - b * vy, b * vx + a * vy
+        pose[i + 1] = pose[i] + (c * dx - s * dy, s * dx + c * dy, turn)
+    return pose
+
+
+def straight_path(start: ArrayLike, end: ArrayLike, steps: int = 40) -> Array:
+    """Straight line between two shapes [rad], shape (steps + 1, N)."""
+    a, b = np.asarray(start, float), np.asarray(end, float)
+    fraction = np.linspace(0.0, 1.0, steps + 1)[:, None]
+    result: Array = a + fraction * (b - a)
+    return result

@@ -1,0 +1,244 @@
+"""The gait node: a turn angle in, joint commands of the two-wave template out."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from builtin_interfaces.msg import Time
+from nav_msgs.msg import Odometry
+from rclpy.context import Context
+from rclpy.node import Node
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64
+from std_srvs.srv import Trigger
+
+from omega_turn_ros.errors import BadInputError
+from omega_turn_ros.gaits.controller_state import Inputs, Mode, Output
+from omega_turn_ros.nodes.command_output import CommandOutput
+from omega_turn_ros.nodes.gait_parameters import GAIT_PARAMETERS, make_controller
+from omega_turn_ros.nodes.health import PUBLISH_EVERY, Freshness, Health, steady_clock
+from omega_turn_ros.nodes.inbox import Inbox
+from omega_turn_ros.nodes.joint_message import JointReader, JointWriter
+from omega_turn_ros.nodes.messages import heading_of, read_offsets
+from omega_turn_ros.nodes.parameters import NodeParameters
+from omega_turn_ros.nodes.qos import COMMAND, LATCHED, REQUEST, STATE, STATE_INPUT
+from omega_turn_ros.nodes.runner import run_node
+from omega_turn_ros.nodes.time import StepTimer, nanoseconds_of
+from omega_turn_ros.robot import load_robot
+
+WAVES = ('forward', 'turning')
+REMAINING_EVERY = 10  # commands between two turn_remaining
+
+
+class GaitNode(Node):
+    """Takes `turn_angle`, publishes `joint_commands`, `wave_phases` and `turn_remaining`.
+
+    Args:
+        context: rclpy context; None for the default one.
+        options: passed on to `rclpy.node.Node`.
+
+    Raises:
+        BadInputError: a parameter is refused.
+    """
+
+    def __init__(self, context: Context | None = None, **options: Any) -> None:
+        super().__init__('gait_node', context=context, **options)
+        self._controller: Any = None
+        self._parameters = NodeParameters(self, GAIT_PARAMETERS, self._accept, self._apply)
+        self._robot = load_robot(self._parameters['robot'])
+        self._health = Health(self)
+        self._apply(self._parameters.values)
+        self._state = self._controller.initial_state()
+        self._period = 1.0 / self._parameters['rate']
+        self._time = StepTimer(2.5 * self._period, self._period)
+        self._inputs = Inputs()
+        self._heading: float | None = None
+        self._answered = -1
+        self._last_stamp = Time()
+        self._output: Output | None = None
+        self._reported: float | None = None
+        self._ticks = 0
+        self._make_topics()
+        self.create_timer(PUBLISH_EVERY, self._publish_health, clock=steady_clock())
+        if not self._lock_step:
+            self.create_timer(self._period, self._on_timer)
+        self._report_remaining()
+
+    def _make_topics(self) -> None:
+        self._lock_step = self._parameters['lock_step']
+        on_state = self._on_lock_step if self._lock_step else None
+        on_request = self._on_request if self._lock_step else None
+        state_qos = STATE if self._lock_step else STATE_INPUT
+        self._turn_angle = Inbox(self, Float64, 'turn_angle', REQUEST, on_request)
+        self._joint_states = Inbox(self, JointState, 'joint_states', state_qos, on_state)
+        self._odom = Inbox(self, Odometry, 'odom', state_qos, on_state)
+        self._amplitudes = Inbox(self, JointState, 'wave_amplitudes', state_qos, on_state)
+        self._stamps = {'joint_states': -1, 'odom': -1, 'wave_amplitudes': -1}
+        self._commands = CommandOutput(
+            self, self._parameters['command_interface'], self._robot.joint_names, self._period
+        )
+        self._phases = self.create_publisher(JointState, 'wave_phases', COMMAND)
+        self._phase_writer = JointWriter(WAVES)
+        self._remaining = self.create_publisher(Float64, 'turn_remaining', LATCHED)
+        self.create_service(Trigger, '~/stop', self._on_stop)
+        self.create_service(Trigger, '~/reset', self._on_reset)
+
+    def _accept(self, values: Mapping[str, Any]) -> None:
+        make_controller(values, load_robot(values['robot']))
+        busy = self._controller is not None and self._state.goal is not None
+        if busy and values['gait'] != self._parameters['gait']:
+            raise BadInputError('parameter gait', values['gait'], 'no change during a turn')
+
+    def _apply(self, values: Mapping[str, Any]) -> None:
+        self._controller = make_controller(values, self._robot)
+        self._joint_reader = JointReader(self._robot.joint_names, values['ignore_unknown_joints'])
+        self._wave_reader = JointReader(WAVES)
+        self._states_seen = Freshness(values['state_timeout'])
+        self._odom_seen = Freshness(values['odom_timeout'])
+        self._amplitudes_seen = Freshness(values['amplitude_timeout'])
+
+    def _on_timer(self) -> None:
+        now = self.get_clock().now()
+        self._read_requests()
+        self._read_inputs()
+        self._advance(self._time.step(now.nanoseconds), now.to_msg())
+
+    def _on_request(self) -> None:
+        self._read_requests()
+        self._report_remaining()
+
+    def _on_lock_step(self) -> None:
+        """Step once every input of one instant has arrived; repeat the answer when asked again."""
+        self._read_inputs()
+        stamp = self._stamps['joint_states']
+        needed = ['odom'] if self._parameters['heading_feedback'] == 'odom' else []
+        needed += ['wave_amplitudes'] if self._parameters['use_compliance'] else []
+        if stamp < 0 or any(self._stamps[name] != stamp for name in needed):
+            return
+        if stamp == self._answered:
+            self._publish_output(self._last_stamp)
+            return
+        self._answered = stamp
+        self._advance(self._time.step(stamp), self._last_stamp)
+
+    def _read_requests(self) -> None:
+        for message in self._turn_angle.drain():
+            try:
+                self._state = self._controller.request_turn(self._state, message.data)
+            except BadInputError as error:
+                self._health.refuse('turn_angle', str(error))
+            else:
+                self._health.note('turn', f'turn by {math.degrees(message.data):.6g} deg')
+
+    def _read_inputs(self) -> None:
+        positions, heading, offsets = self._inputs.positions, self._heading, self._inputs.offsets
+        for message in self._joint_states.drain():
+            try:
+                positions = self._joint_reader.read(message, 'position')
+            except BadInputError as error:
+                self._health.refuse('joint_states', str(error))
+            else:
+                self._last_stamp = message.header.stamp
+                self._stamps['joint_states'] = nanoseconds_of(message.header.stamp)
+                self._states_seen.mark()
+        for message in self._odom.drain():
+            try:
+                heading = heading_of(message)
+            except BadInputError as error:
+                self._health.refuse('odom', str(error))
+            else:
+                self._stamps['odom'] = nanoseconds_of(message.header.stamp)
+                self._odom_seen.mark()
+        for message in self._amplitudes.drain():
+            try:
+                offsets = read_offsets(
+                    message, self._wave_reader, self._controller.config.offset_limit
+                )
+            except BadInputError as error:
+                self._health.refuse('wave_amplitudes', str(error))
+            else:
+                self._stamps['wave_amplitudes'] = nanoseconds_of(message.header.stamp)
+                self._amplitudes_seen.mark()
+        self._heading = heading
+        compliant = self._parameters['use_compliance'] and self._amplitudes_seen.fresh
+        self._inputs = Inputs(
+            positions,
+            self._states_seen.fresh,
+            heading if self._odom_seen.fresh else None,
+            offsets if compliant else (0.0, 0.0),
+        )
+
+    def _advance(self, dt: float, stamp: Time) -> None:
+        was_turning = self._state.goal is not None
+        self._state, self._output = self._controller.step(self._state, self._inputs, dt)
+        self._publish_output(stamp)
+        self._ticks += 1
+        if self._ticks % REMAINING_EVERY == 0 or was_turning != (self._state.goal is not None):
+            self._report_remaining()
+
+    def _publish_output(self, stamp: Time) -> None:
+        output = self._output
+        if output is None:
+            return
+        # Phases first: in lock step the admittance node must have them before the next states.
+        if self._phases.get_subscription_count() > 0:
+            phases = np.array([output.phase_forward, output.phase_turning])
+            rates = np.array([output.phase_rate, output.phase_rate])
+            self._phases.publish(self._phase_writer.fill(stamp, phases, rates))
+        self._commands.publish(stamp, output.positions, output.velocities)
+
+    def _report_remaining(self) -> None:
+        remaining = self._state.remaining
+        if remaining != self._reported:
+            self._reported = remaining
+            self._remaining.publish(Float64(data=remaining))
+
+    def _on_stop(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        self._state = self._controller.stop(self._state)
+        self._report_remaining()
+        self.get_logger().warning('stopped; commands are refused until reset')
+        response.success, response.message = True, 'stopped: posture held until reset'
+        return response
+
+    def _on_reset(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        self._state = self._controller.reset(self._state)
+        response.success, response.message = True, f'{self._state.mode.value}: ready for a turn'
+        return response
+
+    def _publish_health(self) -> None:
+        state, values = self._state, self._parameters.values
+        problems = []
+        if state.mode is Mode.STOPPED:
+            problems.append('stopped: call reset')
+        if not self._states_seen.fresh:
+            problems.append('joint_states stale')
+            if state.goal is not None:
+                self._health.warn('stale', 'no joint_states: the turn waits')
+        if values['heading_feedback'] == 'odom' and not self._odom_seen.fresh:
+            problems.append('odom stale: heading predicted')
+            if state.goal is not None:
+                self._health.warn('odom', 'no odom: heading is predicted')
+        if abs(state.shortfall) > 2.0 * values['heading_tolerance']:
+            problems.append('last turn ended short')
+        facts = {
+            'mode': state.mode.value,
+            'remaining [rad]': state.remaining,
+            'progress [rad]': state.heading.progress,
+            'cycles': state.cycles,
+            'scale': state.scale,
+            'ground ratio': state.ground_ratio,
+            'shortfall [rad]': state.shortfall,
+            'commands limited': state.limited,
+            'heading jumps left out': state.heading.jumps,
+            'clock jumps': self._time.jumps,
+            'amplitude offsets [rad]': state.offsets,
+        }
+        self._health.publish(problems, facts)
+
+
+def main(args: list[str] | None = None) -> int:
+    """Run the gait node until SIGINT or SIGTERM; return the exit code."""
+    return run_node(GaitNode, args)

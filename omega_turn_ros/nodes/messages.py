@@ -1,0 +1,37 @@
+"""Checked reading of odom and wave_amplitudes."""
+
+from __future__ import annotations
+
+import math
+
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import JointState
+
+from omega_turn_ros.errors import BadInputError
+from omega_turn_ros.nodes.joint_message import JointReader
+
+
+def heading_of(message: Odometry) -> float:
+    """Heading of the pose [rad], in -pi..pi.
+
+    Raises:
+        BadInputError: the quaternion is not finite or not of unit length.
+    """
+    q = message.pose.pose.orientation
+    norm = math.sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w)
+    if not abs(norm - 1.0) < 1e-2:  # also catches NaN
+        raise BadInputError('orientation', (q.x, q.y, q.z, q.w), 'a unit quaternion')
+    return math.atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z))
+
+
+def read_offsets(message: JointState, reader: JointReader, limit: float) -> tuple[float, float]:
+    """Amplitude offsets of (forward, turning) [rad].
+
+    Raises:
+        BadInputError: names, sizes or values are wrong, or an offset exceeds `limit` [rad].
+    """
+    forward, turning = (float(v) for v in reader.read(message, 'position'))
+    for name, value in (('forward', forward), ('turning', turning)):
+        if abs(value) > limit * (1.0 + 1e-9):
+            raise BadInputError(f'offset of {name}', value, f'within +-{limit} rad')
+    return forward, turning

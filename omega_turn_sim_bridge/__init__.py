@@ -1,0 +1,1 @@
+"""A PyBullet robot that stands in for hardware behind the same topics."""

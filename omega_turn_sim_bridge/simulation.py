@@ -1,0 +1,304 @@
+"""PyBullet behind four verbs: reset, step, observe, close. Knows no ROS."""
+
+from __future__ import annotations
+
+import math
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+
+import numpy as np
+import pybullet
+from numpy.typing import ArrayLike, NDArray
+
+from omega_turn_ros.errors import BadInputError, SimulationError
+from omega_turn_ros.robot import STANDARD_GRAVITY, Robot
+from omega_turn_sim_bridge.robot import ride_height, urdf_from_robot
+from omega_turn_sim_bridge.terrain import build_terrain
+
+Array = NDArray[np.float64]
+
+# Positions in the tuples PyBullet returns.
+JOINT_POSITION, JOINT_VELOCITY, JOINT_MOTOR_TORQUE = 0, 1, 3
+LINK_COM_POSITION, LINK_COM_VELOCITY = 0, 6
+
+
+@dataclass(frozen=True, slots=True)
+class SimulationConfig:
+    """Physics settings.
+
+    Attributes:
+        time_step: one solver step [s].
+        solver_iterations: of the constraint solver, per step.
+        friction: kinetic friction coefficient between feet and ground.
+        contact_stiffness: of each foot [N/m]. Compliant feet share the weight evenly; rigid
+            contact is statically indeterminate and lets friction act at random places.
+        contact_damping: of each foot [N s/m].
+        effort_limit: largest motor torque [N m]; 0 takes the robot's own.
+        velocity_limit: largest motor speed [rad/s]; 0 takes the robot's own.
+        position_noise: standard deviation of the joint position readings [rad].
+        effort_noise: standard deviation of the effort readings [N m].
+        seed: of the noise and of random terrains.
+        terrain: name of the ground, see `terrain.TERRAINS`.
+        gui: show PyBullet's window.
+    """
+
+    time_step: float = 1.0 / 200.0
+    solver_iterations: int = 20
+    friction: float = 0.5
+    contact_stiffness: float = 5e3
+    contact_damping: float = 100.0
+    effort_limit: float = 0.0
+    velocity_limit: float = 0.0
+    position_noise: float = 0.0
+    effort_noise: float = 0.0
+    seed: int = 0
+    terrain: str = 'flat'
+    gui: bool = False
+
+    def __post_init__(self) -> None:
+        """Refuse settings the engine would accept silently."""
+        positive = ('time_step', 'solver_iterations', 'contact_stiffness')
+        not_negative = (
+            'friction',
+            'contact_damping',
+            'effort_limit',
+            'velocity_limit',
+            'position_noise',
+            'effort_noise',
+        )
+        for field in (*positive, *not_negative):
+            value = getattr(self, field)
+            if not math.isfinite(value) or value < 0 or (field in positive and value == 0):
+                expected = 'a finite number > 0' if field in positive else 'a finite number >= 0'
+                raise BadInputError(field, value, expected)
+
+
+@dataclass(frozen=True, slots=True)
+class Observation:
+    """What sensors and the simulator's eye see at one instant.
+
+    Attributes:
+        time: simulated time since the start [s], from an integer step count.
+        positions: measured joint positions, head to tail [rad], shape (n_joints,).
+        velocities: joint velocities [rad/s], shape (n_joints,).
+        efforts: torque of each motor on the body behind its joint, + drives the joint towards
+            positive angles [N m], shape (n_joints,).
+        pose: mean body frame in the world: x [m], y [m], heading [rad, continuous], shape (3,).
+        twist: its velocity in its own axes [m/s, m/s, rad/s], shape (3,).
+    """
+
+    time: float
+    positions: Array
+    velocities: Array
+    efforts: Array
+    pose: Array
+    twist: Array
+
+
+class Simulation:
+    """One robot on one ground in its own physics client.
+
+    Args:
+        robot: the robot.
+        config: physics settings.
+    """
+
+    def __init__(self, robot: Robot, config: SimulationConfig | None = None) -> None:
+        self.robot = robot
+        self.config = config or SimulationConfig()
+        mode = pybullet.GUI if self.config.gui else pybullet.DIRECT
+        self._client = pybullet.connect(mode)
+        if self._client < 0:
+            raise SimulationError('PyBullet gave no physics client')
+        self._effort_limit = self.config.effort_limit or robot.effort_limit
+        self._velocity_limit = self.config.velocity_limit or robot.velocity_limit
+        self._joints = list(range(robot.n_joints))
+        self._yaw = robot.yaw_indices
+        self._mass_fractions = robot.body_masses / robot.body_masses.sum()
+        self._behind = self._fraction_behind_joints()
+        self._steps = 0
+        self._build()
+
+    def __enter__(self) -> Simulation:
+        """Return the simulation itself."""
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        value: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """Close the physics client."""
+        self.close()
+
+    @property
+    def time(self) -> float:
+        """Simulated time since the start [s]; a reset does not turn it back."""
+        return self._steps * self.config.time_step
+
+    @property
+    def client(self) -> int:
+        """PyBullet's id of this physics client."""
+        return self._client
+
+    @property
+    def body(self) -> int:
+        """PyBullet's id of the robot."""
+        return self._body
+
+    def reset(self) -> None:
+        """Put the robot back: straight along x, mean body frame at the origin, at rest."""
+        front = self.robot.length * 0.5 - self.robot.head_length
+        position = (front, 0.0, ride_height(self.robot))
+        pybullet.resetBasePositionAndOrientation(
+            self._body, self._base_frame(position), (0, 0, 0, 1), physicsClientId=self._client
+        )
+        pybullet.resetBaseVelocity(
+            self._body, (0, 0, 0), (0, 0, 0), physicsClientId=self._client
+        )
+        for joint in self._joints:
+            pybullet.resetJointState(self._body, joint, 0.0, 0.0, physicsClientId=self._client)
+        self._reference = np.zeros(self.robot.n_joints)
+        self._target = np.zeros(self.robot.n_joints)
+        self._base_yaw = 0.0
+        self._rng = np.random.default_rng(self.config.seed)
+
+    def command(self, positions: ArrayLike) -> None:
+        """Set the motor targets, held until the next call.
+
+        Args:
+            positions: joint angles, head to tail [rad], shape (n_joints,).
+
+        Raises:
+            BadInputError: wrong shape, or a value that is not finite.
+        """
+        target = np.asarray(positions, float)
+        if target.shape != (self.robot.n_joints,):
+            raise BadInputError('positions', target.shape, f'shape ({self.robot.n_joints},)')
+        if not np.isfinite(target).all():
+            raise BadInputError('positions', target.tolist(), 'finite angles [rad]')
+        limit = self.robot.position_limit
+        self._target = np.clip(target, -limit, limit)
+
+    def step(self, count: int = 1) -> None:
+        """Advance the physics by `count` solver steps.
+
+        Raises:
+            SimulationError: the client has been closed.
+        """
+        if self._client < 0:
+            raise SimulationError('the simulation is closed')
+        reach = self._velocity_limit * self.config.time_step
+        for left in range(count, 0, -1):
+            # Spread the way to the target over the steps of this call, as a servo interpolates.
+            move = np.clip((self._target - self._reference) / left, -reach, reach)
+            self._reference += move
+            pybullet.setJointMotorControlArray(
+                self._body,
+                self._joints,
+                pybullet.POSITION_CONTROL,
+                targetPositions=self._reference.tolist(),
+                targetVelocities=(move / self.config.time_step).tolist(),
+                forces=self._forces,
+                positionGains=self._position_gains,
+                velocityGains=self._velocity_gains,
+                physicsClientId=self._client,
+            )
+            pybullet.stepSimulation(physicsClientId=self._client)
+            self._steps += 1
+
+    def observe(self) -> Observation:
+        """Read joints and mean body frame.
+
+        Raises:
+            SimulationError: the physics has left the realm of finite numbers.
+        """
+        states = pybullet.getJointStates(self._body, self._joints, physicsClientId=self._client)
+        table = np.array([(s[JOINT_POSITION], s[JOINT_VELOCITY], s[JOINT_MOTOR_TORQUE]) for s in states])
+        positions, velocities, efforts = table.T
+        pose, twist = self._mean_body_frame(positions, velocities)
+        if not (np.isfinite(table).all() and np.isfinite(pose).all()):
+            raise SimulationError(f'not finite at t = {self.time:.3f} s: the scene has exploded')
+        if self.config.position_noise:
+            positions = positions + self._rng.normal(0.0, self.config.position_noise, positions.shape)
+        if self.config.effort_noise:
+            efforts = efforts + self._rng.normal(0.0, self.config.effort_noise, efforts.shape)
+        return Observation(self.time, positions, velocities, efforts, pose, twist)
+
+    def hold_posture(self) -> None:
+        """Make the present posture the motor target."""
+        states = pybullet.getJointStates(self._body, self._joints, physicsClientId=self._client)
+        self.command([s[JOINT_POSITION] for s in states])
+
+    def close(self) -> None:
+        """Disconnect the physics client; further calls do nothing."""
+        if self._client >= 0:
+            pybullet.disconnect(physicsClientId=self._client)
+            self._client = -1
+
+    def _build(self) -> None:
+        client, config = self._client, self.config
+        pybullet.setGravity(0, 0, -STANDARD_GRAVITY, physicsClientId=client)
+        pybullet.setPhysicsEngineParameter(
+            fixedTimeStep=config.time_step,
+            numSolverIterations=config.solver_iterations,
+            enableConeFriction=1,
+            deterministicOverlappingPairs=1,
+            physicsClientId=client,
+        )
+        self.terrain_bodies = build_terrain(client, config.terrain, config.seed)
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / f'{self.robot.name}.urdf'
+            path.write_text(urdf_from_robot(self.robot))
+            self._body = pybullet.loadURDF(
+                str(path), flags=pybullet.URDF_USE_INERTIA_FROM_FILE, physicsClientId=client
+            )
+        for link in range(-1, self.robot.n_joints):
+            pybullet.changeDynamics(
+                self._body,
+                link,
+                lateralFriction=config.friction,
+                contactStiffness=config.contact_stiffness,
+                contactDamping=config.contact_damping,
+                linearDamping=0.0,
+                angularDamping=0.0,
+                jointDamping=0.0,
+                physicsClientId=client,
+            )
+        self._forces = [self._effort_limit] * self.robot.n_joints
+        self._position_gains = [0.3] * self.robot.n_joints
+        self._velocity_gains = [1.0] * self.robot.n_joints
+        self.reset()
+
+    def _base_frame(self, link_frame: tuple[float, float, float]) -> tuple[float, float, float]:
+        """Position of the base's centre of mass, which PyBullet's base calls speak of."""
+        x, y, z = link_frame
+        return x + 0.5 * self.robot.head_length, y, z
+
+    def _fraction_behind_joints(self) -> Array:
+        """Share of the body length behind each yaw joint: d(mean link angle)/d(joint angle)."""
+        lengths = self.robot.planar_link_lengths
+        return 1.0 - np.cumsum(lengths)[:-1] / lengths.sum()
+
+    def _mean_body_frame(self, positions: Array, velocities: Array) -> tuple[Array, Array]:
+        client = self._client
+        base, (qx, qy, qz, qw) = pybullet.getBasePositionAndOrientation(
+            self._body, physicsClientId=client
+        )
+        base_velocity, base_rate = pybullet.getBaseVelocity(self._body, physicsClientId=client)
+        links = pybullet.getLinkStates(
+            self._body, self._joints, computeLinkVelocity=1, physicsClientId=client
+        )
+        yaw = math.atan2(2.0 * (qw * qz + qx * qy), 1.0 - 2.0 * (qy * qy + qz * qz))
+        self._base_yaw += math.remainder(yaw - self._base_yaw, math.tau)
+        heading = self._base_yaw + float(self._behind @ positions[self._yaw])
+        rate = base_rate[2] + float(self._behind @ velocities[self._yaw])
+        centres = np.array([base] + [s[LINK_COM_POSITION] for s in links])
+        rates = np.array([base_velocity] + [s[LINK_COM_VELOCITY] for s in links])
+        x, y, _ = self._mass_fractions @ centres
+        vx, vy, _ = self._mass_fractions @ rates
+        c, s = math.cos(heading), math.sin(heading)
+        return np.array([x, y, heading]), np.array([c * vx + s * vy, c * vy - s * vx, rate])

@@ -59,7 +59,7 @@ setup(
     },
     zip_safe=False,
     maintainer='omega_turn_ros maintainers',
-    maintainer_email='maintainers@omega-turn-ros.org',
+    maintainer_email='maintainers@example.org',
     description='Omega turns for limbless and many-legged robots: gaits, mechanics, compliance',
     license='Apache-2.0',
     tests_require=['pytest'],

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from omega_turn_lab.recording import RunRecord
+from omega_turn_lab.run_record import RunRecord
 from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.mechanics.chain import PlanarChain
 from omega_turn_ros.robot import Robot

@@ -1,82 +1,43 @@
-"""What a run leaves behind: an MCAP file for Foxglove and PlotJuggler, and arrays for pictures."""
+"""Recording topics to an MCAP file for Foxglove and PlotJuggler."""
 
 from __future__ import annotations
 
 import re
+import struct
 import sys
 import threading
 from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-import numpy as np
 from mcap.well_known import MessageEncoding, Profile, SchemaEncoding
 from mcap.writer import Writer
-from numpy.typing import NDArray
+
+from rclpy.exceptions import InvalidHandle
+from rclpy.node import Node
+from rclpy.qos import QoSProfile
 
 from omega_turn_ros.errors import BadInputError
+from omega_turn_ros.nodes.health import steady_clock
+from omega_turn_ros.nodes.inbox import Inbox
 
-if TYPE_CHECKING:
-    from rclpy.node import Node
-    from rclpy.qos import QoSProfile
 
-Array = NDArray[np.float64]
-
+LOOK_EVERY = 0.1  # [s]
+QUEUE = 1000  # messages a topic may pile up between two looks
 SEPARATOR = '=' * 80  # between the definitions that make one 'ros2msg' schema
 INTEGERS = {f'{sign}int{bits}' for sign in ('', 'u') for bits in (8, 16, 32, 64)}
 BUILT_IN_TYPES = INTEGERS | {'bool', 'byte', 'char', 'float32', 'float64', 'string', 'wstring'}
-
-
-@dataclass(frozen=True, slots=True)
-class RunRecord:
-    """One run, sampled at T instants; every value is finite.
-
-    Attributes:
-        time: simulated or robot time, never decreasing [s], shape (T,).
-        pose: mean body frame in the world: x [m], y [m], heading [rad, continuous], shape (T, 3).
-        joint_positions: measured, head to tail [rad], shape (T, n_joints).
-        joint_commands: what the gait asked for, head to tail [rad], shape (T, n_joints).
-        remaining: angle still to turn [rad], shape (T,).
-    """
-
-    time: Array
-    pose: Array
-    joint_positions: Array
-    joint_commands: Array
-    remaining: Array
-
-    def __post_init__(self) -> None:
-        """Refuse arrays that do not belong together."""
-        samples = np.shape(self.time)[:1]
-        joints = np.shape(self.joint_positions)[1:2]
-        if np.ndim(self.time) != 1 or samples[0] < 2:
-            raise BadInputError('time', np.shape(self.time), 'shape (T,), T >= 2')
-        expected = {
-            'time': samples,
-            'pose': (*samples, 3),
-            'joint_positions': (*samples, *(joints or ('n_joints',))),
-            'joint_commands': (*samples, *(joints or ('n_joints',))),
-            'remaining': samples,
-        }
-        for field, shape in expected.items():
-            value = getattr(self, field)
-            if np.shape(value) != shape:
-                raise BadInputError(field, np.shape(value), f'shape {shape}')
-            if not np.isfinite(value).all():
-                raise BadInputError(field, value[~np.isfinite(value)][0], 'finite numbers')
-        if np.any(np.diff(self.time) < 0.0) or self.time[-1] <= self.time[0]:
-            raise BadInputError('time', self.time, 'times that never decrease and do pass [s]')
 
 
 class BagRecorder:
     """Writes topics, byte for byte as they arrive, to one MCAP file.
 
     Messages keep their CDR encoding and are never decoded; the schemas are the .msg definitions
-    themselves, so Foxglove and PlotJuggler need nothing else. Log and publish time are the receipt
-    in the node's clock, hence simulated time where the node uses it.
+    themselves, so Foxglove and PlotJuggler need nothing else. Log and publish time are the stamp of
+    a stamped message, else of the stamped one before it. Topics are looked at ten times a second, so recording
+    does not slow down the run it watches.
 
     Args:
         node: whose executor and clock are used; it stays the caller's.
@@ -104,18 +65,20 @@ class BagRecorder:
         self._node = node
         self._lock = threading.Lock()  # an executor may run callbacks while another thread closes
         self._counts = dict.fromkeys(names, 0)
-        self._subscriptions: list[Any] = []
+        self._sources: list[tuple[Inbox[Any], int, bool]] = []
+        self._latest: int | None = None
+        self._waiting: list[tuple[int, int, bytes, int | None]] = []
         self.path.parent.mkdir(parents=True, exist_ok=True)
         self._stream = self.path.open('wb')
         self._writer: Any = Writer(self._stream)  # mcap leaves parts of it untyped
         self._open = True
         try:
             channels = self._start_file(names, types, schemas)
-            for name, channel, (_, message, qos) in zip(names, channels, topics):
-                callback = self._callback(name, channel)
-                self._subscriptions.append(
-                    node.create_subscription(message, name, callback, qos, raw=True)
-                )
+            self._sources = [
+                (Inbox(node, message, name, _deep(qos), raw=True), channel, _is_stamped(message))
+                for name, channel, (_, message, qos) in zip(names, channels, topics)
+            ]
+            self._timer = node.create_timer(LOOK_EVERY, self._drain, clock=steady_clock())
         except BaseException:
             self.close()
             raise
@@ -135,7 +98,7 @@ class BagRecorder:
 
     @property
     def counts(self) -> dict[str, int]:
-        """Messages written so far, by fully resolved topic name."""
+        """Messages received so far, by fully resolved topic name."""
         return dict(self._counts)
 
     def close(self) -> None:
@@ -143,13 +106,17 @@ class BagRecorder:
         with self._lock:
             if not self._open:
                 return
+        try:
+            self._drain()
+        except InvalidHandle:
+            pass  # the node went first; what was written stays whole
+        with self._lock:
             self._open = False
             try:
+                self._write_waiting(self._node.get_clock().now().nanoseconds)
                 self._writer.finish()
             finally:
                 self._stream.close()
-        for subscription in self._subscriptions:
-            self._node.destroy_subscription(subscription)
 
     def _start_file(
         self, names: Sequence[str], types: Sequence[str], schemas: dict[str, str]
@@ -165,16 +132,47 @@ class BagRecorder:
             for name, kind in zip(names, types)
         ]
 
-    def _callback(self, topic: str, channel: int) -> Callable[[bytes], None]:
-        def write(data: bytes) -> None:
-            now = self._node.get_clock().now().nanoseconds
-            with self._lock:
-                if not self._open:
-                    return
-                self._counts[topic] += 1
-                self._writer.add_message(channel, now, data, now, self._counts[topic])
+    def _drain(self) -> None:
+        """Write what has arrived since the last look."""
+        with self._lock:
+            if not self._open:
+                return
+            for inbox, channel, stamped in self._sources:
+                for data in inbox.drain():
+                    if stamped:
+                        self._latest = _stamp_in(data)
+                    self._counts[inbox.topic] += 1
+                    count = self._counts[inbox.topic]
+                    self._waiting.append((channel, count, data, self._latest))
+            if self._latest is not None:
+                self._write_waiting(self._latest)
 
-        return write
+    def _write_waiting(self, now: int) -> None:
+        """Write the queue; what came before any stamp is dated `now` [ns]."""
+        for channel, count, data, time in self._waiting:
+            when = now if time is None else time
+            self._writer.add_message(channel, when, data, when, count)
+        self._waiting.clear()
+
+
+def _deep(qos: QoSProfile | int) -> QoSProfile:
+    """The same QoS with a queue that outlasts the time between two looks."""
+    if isinstance(qos, int):
+        return QoSProfile(depth=max(qos, QUEUE))
+    return QoSProfile(depth=QUEUE, reliability=qos.reliability, durability=qos.durability)
+
+
+def _is_stamped(message: type[Any]) -> bool:
+    """Whether the first field is a time or a header, which begins with one."""
+    first = next(iter(message.get_fields_and_field_types().values()), '')
+    return first in ('std_msgs/Header', 'builtin_interfaces/Time')
+
+
+def _stamp_in(data: bytes) -> int:
+    """Nanoseconds of the stamp that leads a CDR message, behind its 4 bytes of encapsulation."""
+    order = '<' if data[1] & 1 else '>'
+    seconds, nanoseconds = struct.unpack_from(f'{order}iI', data, 4)
+    return max(seconds * 10**9 + nanoseconds, 0)
 
 
 def message_type_name(message: type[Any]) -> str:

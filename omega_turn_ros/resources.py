@@ -43,8 +43,8 @@ def read_config(folder: str, name: str) -> dict[str, Any]:
             folder, name, f'a path to a .yaml file or one of {config_names(folder)}'
         )
     try:
-        data = yaml.safe_load(entry.read_text())
-    except yaml.YAMLError as error:
+        data = yaml.safe_load(entry.read_text(encoding='utf-8'))
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
         raise BadInputError(folder, name, f'valid YAML ({error})') from error
     if not isinstance(data, dict):
         raise BadInputError(folder, name, 'a YAML mapping at the top level')

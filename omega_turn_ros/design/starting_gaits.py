@@ -12,8 +12,9 @@ from omega_turn_ros.gaits.two_wave import TwoWaveGait
 
 STARTING_GAITS: dict[str, tuple[str, float, TwoWaveGait]] = {
     'omega': (
-        'Omega turn, k_t = 1, joint limit 90 deg',
-        math.radians(90.0),
+        # At 90 deg head and tail would overlap by 5 mm; half a degree less clears them.
+        'Omega turn, k_t = 1, joint limit 90 deg (89.5 used: head and tail just clear)',
+        math.radians(89.5),
         TwoWaveGait(1.5, 1.0, 0.59, 0.0, -1.02, -0.78, -2.75, -3.07),
     ),
     'omega_75': (

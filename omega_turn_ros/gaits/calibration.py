@@ -40,15 +40,21 @@ class Calibration:
 
     def __post_init__(self) -> None:
         """Refuse tables that do not fit together."""
+        for field in ('start_phase', 'peak_rate', 'scales', 'heading', 'bend_heading'):
+            if not np.isfinite(getattr(self, field)).all():
+                raise BadInputError(f'calibration {field}', 'NaN or Inf', 'finite numbers')
+        if self.peak_rate <= 0.0:
+            raise BadInputError('calibration peak_rate', self.peak_rate, 'a rate > 0 [rad/rad]')
+        if self.n_joints < 2:
+            raise BadInputError('calibration n_joints', self.n_joints, 'at least 2')
         count = self.scales.size
-        if count < 2 or self.scales[0] != 0.0 or (np.diff(self.scales) <= 0.0).any():
-            raise BadInputError('calibration scales', self.scales.tolist(), '0 < ... rising')
-        if self.heading.ndim != 2 or self.heading.shape[0] != count:
+        rising = self.scales.ndim == 1 and count >= 2 and (np.diff(self.scales) > 0.0).all()
+        if not rising or self.scales[0] != 0.0 or self.scales[-1] != 1.0:
+            raise BadInputError('calibration scales', self.scales.tolist(), 'rising from 0 to 1')
+        if self.heading.ndim != 2 or self.heading.shape[0] != count or self.heading.shape[1] < 2:
             raise BadInputError('calibration heading', self.heading.shape, f'({count}, phases)')
         if self.bend_heading.shape != (count,):
             raise BadInputError('calibration bend_heading', self.bend_heading.shape, f'({count},)')
-        if not all(np.isfinite(a).all() for a in (self.heading, self.bend_heading)):
-            raise BadInputError('calibration', 'NaN or Inf', 'finite headings [rad]')
         if self.largest_angle <= 0.0:
             raise BadInputError('calibration heading', self.largest_angle, 'an angle > 0 [rad]')
 

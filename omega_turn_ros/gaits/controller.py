@@ -34,7 +34,7 @@ Array = NDArray[np.float64]
 AT_REST = 1e-3  # [rad] from the rest shape: nothing to unbend
 SAME_SHAPE = 1e-4  # [rad] between start shapes: no move needed
 NEGLIGIBLE_TURN = 1e-6  # [rad]
-GATE_TIME = 0.5  # [s] over which a cycle lets amplitude offsets in
+GATE_TIME = 0.5  # [s] over which a cycle lets amplitude offsets in and, at its end, out again
 SETTLE_TIME = 0.3  # [s] the robot lags its command before the heading is judged
 RATIO_RANGE = (0.3, 3.0)  # of measured to predicted angle per cycle worth believing
 JUDGED_FROM = 0.005  # [rad] predicted; a smaller cycle says nothing
@@ -140,9 +140,10 @@ class GaitController:
             state = replace(state, phase_rate=0.0)
         measured = inputs.heading if self.config.heading_feedback else None
         state = replace(state, heading=state.heading.advanced(predicted, measured))
+        state, output = self._command(state, target, dt)
         if running:
             state = self._next_motion(state, dt)
-        return self._command(state, target, dt)
+        return state, output
 
     def _start(self, state: ControllerState, positions: Array) -> ControllerState:
         limit = self.limits.position
@@ -155,7 +156,7 @@ class GaitController:
     def _take_offsets(
         self, state: ControllerState, wanted: tuple[float, float], dt: float
     ) -> ControllerState:
-        if wanted == state.offsets:
+        if wanted == state.offsets or any(math.isnan(w) for w in wanted):
             return state
         limit, reach = self.config.offset_limit, self.config.offset_rate * dt
         f, t = (
@@ -173,7 +174,7 @@ class GaitController:
         if state.catching_up is None:
             return state, True
         waited = state.catching_up + dt
-        error = float(np.abs(inputs.positions - state.command).max())
+        error = float(np.abs(inputs.positions - self._known(state)).max())
         if error <= self.config.catch_up_tolerance or waited >= self.config.catch_up_time:
             return replace(state, catching_up=None), True
         return replace(state, catching_up=waited), False
@@ -196,7 +197,9 @@ class GaitController:
         braking = max(math.sqrt(2.0 * acceleration * left), 0.05 * self._cycle_rate)
         rate = min(rate, braking)
         turned = min(state.turned + rate * dt, 2.0 * math.pi)
-        gate = min(state.gate + dt / GATE_TIME, 1.0)
+        # The cycle ends in its own shape: unbending offsets would count as heading never turned.
+        closing = (2.0 * math.pi - turned) / (self._cycle_rate * GATE_TIME)
+        gate = min(state.gate + dt / GATE_TIME, closing, 1.0)
         table = self.gait.calibration
         predicted = table.heading_at(state.scale, turned) - table.heading_at(
             state.scale, state.turned

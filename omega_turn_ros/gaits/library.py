@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -50,6 +51,9 @@ def load_gait(name: str) -> LibraryGait:
         raise BadInputError(f'gait {name}', odd, f'exactly the fields {sorted(expected)}')
     if data['kind'] != 'two_wave':
         raise BadInputError('gait kind', data['kind'], "'two_wave'")
+    theta_max = data['theta_max']
+    if not isinstance(theta_max, (int, float)) or not 0.0 < theta_max <= math.pi:
+        raise BadInputError('gait theta_max', theta_max, 'an angle in 0..pi [rad]')
     parameters = data['parameters']
     fields = set(TwoWaveGait.__slots__)
     if not isinstance(parameters, dict) or set(parameters) != fields:
@@ -58,7 +62,7 @@ def load_gait(name: str) -> LibraryGait:
         str(data['name']),
         str(data['description']),
         str(data['robot']),
-        float(data['theta_max']),
+        float(theta_max),
         TwoWaveGait(**parameters),
         calibration_from_mapping(data['calibration']),
     )

@@ -45,7 +45,7 @@ def limit_command(
 
     Args:
         previous: last command [rad], shape (n_joints,), inside the position limit.
-        target: wanted command [rad], shape (n_joints,).
+        target: wanted command [rad], shape (n_joints,); a joint at NaN stays where it is.
         dt: time since the last command [s], >= 0.
         limits: what to keep.
 
@@ -53,6 +53,7 @@ def limit_command(
         The command [rad], shape (n_joints,), and whether any limit changed it.
     """
     reach = min(limits.velocity * dt, limits.step)
-    command = np.clip(target, previous - reach, previous + reach)
+    known = np.where(np.isnan(target), previous, target)
+    command = np.clip(known, previous - reach, previous + reach)
     np.clip(command, -limits.position, limits.position, out=command)
-    return command, bool((np.abs(command - target) > 1e-12).any())
+    return command, not bool((np.abs(command - target) <= 1e-12).all())

@@ -45,6 +45,8 @@ def plan_turn(angle: float, calibration: Calibration, ground_ratio: float = 1.0)
     if angle == 0.0:
         return TurnPlan(0, 0.0, 0.0)
     model_angle = angle / ground_ratio
+    if not math.isfinite(model_angle / calibration.largest_angle):
+        raise BadInputError('angle', angle, 'an angle of countable cycles [rad]')
     # The slack keeps a turn of exactly n largest cycles at n.
     cycles = max(1, math.ceil(abs(model_angle) / calibration.largest_angle - 1e-9))
     scale = calibration.scale_of(model_angle / cycles)

@@ -156,9 +156,9 @@ class TwoWaveGait:
         tau_f, tau_t = self.phases(phase)
         forward, turning = self.amplitudes(phase)
         return two_wave_angles(
-            np.asarray(scale) * forward + offsets[0],
+            np.asarray(scale, float) * forward + np.asarray(offsets[0], float),
             tau_f,
-            np.asarray(scale) * turning + offsets[1],
+            np.asarray(scale, float) * turning + np.asarray(offsets[1], float),
             tau_t,
             self.k_f,
             self.k_t,

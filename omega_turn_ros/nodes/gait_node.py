@@ -16,7 +16,7 @@ from std_msgs.msg import Float64
 from std_srvs.srv import Trigger
 
 from omega_turn_ros.errors import BadInputError
-from omega_turn_ros.gaits.controller_state import Inputs, Mode, Output
+from omega_turn_ros.gaits.controller_state import ControllerState, Inputs, Mode, Output
 from omega_turn_ros.nodes.command_output import CommandOutput
 from omega_turn_ros.nodes.gait_parameters import GAIT_PARAMETERS, make_controller
 from omega_turn_ros.nodes.health import PUBLISH_EVERY, Freshness, Health, steady_clock
@@ -46,12 +46,11 @@ class GaitNode(Node):
 
     def __init__(self, context: Context | None = None, **options: Any) -> None:
         super().__init__('gait_node', context=context, **options)
-        self._controller: Any = None
+        self._state = ControllerState()
         self._parameters = NodeParameters(self, GAIT_PARAMETERS, self._accept, self._apply)
         self._robot = load_robot(self._parameters['robot'])
         self._health = Health(self)
         self._apply(self._parameters.values)
-        self._state = self._controller.initial_state()
         self._period = 1.0 / self._parameters['rate']
         self._time = StepTimer(2.5 * self._period, self._period)
         self._inputs = Inputs()
@@ -67,13 +66,19 @@ class GaitNode(Node):
             self.create_timer(self._period, self._on_timer)
         self._report_remaining()
 
+    @property
+    def cycles_done(self) -> int:
+        """Cycles completed in the present or last turn."""
+        return int(self._state.cycles)
+
     def _make_topics(self) -> None:
         self._lock_step = self._parameters['lock_step']
+        on_question = self._on_question if self._lock_step else None
         on_state = self._on_lock_step if self._lock_step else None
-        on_request = self._on_request if self._lock_step else None
+        on_request = self._read_requests if self._lock_step else None
         state_qos = STATE if self._lock_step else STATE_INPUT
         self._turn_angle = Inbox(self, Float64, 'turn_angle', REQUEST, on_request)
-        self._joint_states = Inbox(self, JointState, 'joint_states', state_qos, on_state)
+        self._joint_states = Inbox(self, JointState, 'joint_states', state_qos, on_question)
         self._odom = Inbox(self, Odometry, 'odom', state_qos, on_state)
         self._amplitudes = Inbox(self, JointState, 'wave_amplitudes', state_qos, on_state)
         self._stamps = {'joint_states': -1, 'odom': -1, 'wave_amplitudes': -1}
@@ -88,8 +93,7 @@ class GaitNode(Node):
 
     def _accept(self, values: Mapping[str, Any]) -> None:
         make_controller(values, load_robot(values['robot']))
-        busy = self._controller is not None and self._state.goal is not None
-        if busy and values['gait'] != self._parameters['gait']:
+        if self._state.goal is not None and values['gait'] != self._parameters['gait']:
             raise BadInputError('parameter gait', values['gait'], 'no change during a turn')
 
     def _apply(self, values: Mapping[str, Any]) -> None:
@@ -106,20 +110,20 @@ class GaitNode(Node):
         self._read_inputs()
         self._advance(self._time.step(now.nanoseconds), now.to_msg())
 
-    def _on_request(self) -> None:
-        self._read_requests()
-        self._report_remaining()
+    def _on_question(self) -> None:
+        """A reading is the robot's question: answer it, and again when it asks again."""
+        answered = self._answered
+        self._on_lock_step()
+        if self._stamps['joint_states'] == answered:
+            self._publish_output(self._last_stamp)
 
     def _on_lock_step(self) -> None:
-        """Step once every input of one instant has arrived; repeat the answer when asked again."""
+        """Step once every input of one instant has arrived."""
         self._read_inputs()
         stamp = self._stamps['joint_states']
         needed = ['odom'] if self._parameters['heading_feedback'] == 'odom' else []
         needed += ['wave_amplitudes'] if self._parameters['use_compliance'] else []
-        if stamp < 0 or any(self._stamps[name] != stamp for name in needed):
-            return
-        if stamp == self._answered:
-            self._publish_output(self._last_stamp)
+        if stamp == self._answered or any(self._stamps[name] != stamp for name in needed):
             return
         self._answered = stamp
         self._advance(self._time.step(stamp), self._last_stamp)
@@ -132,6 +136,7 @@ class GaitNode(Node):
                 self._health.refuse('turn_angle', str(error))
             else:
                 self._health.note('turn', f'turn by {math.degrees(message.data):.6g} deg')
+                self._report_remaining()
 
     def _read_inputs(self) -> None:
         positions, heading, offsets = self._inputs.positions, self._heading, self._inputs.offsets

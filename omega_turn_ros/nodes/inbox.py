@@ -40,6 +40,7 @@ class Inbox(Generic[Message]):
         topic: relative name.
         qos: its depth bounds what one `drain` returns.
         on_arrival: called after each message has been stored.
+        raw: hand out serialised bytes instead of messages.
     """
 
     def __init__(
@@ -49,13 +50,14 @@ class Inbox(Generic[Message]):
         topic: str,
         qos: QoSProfile,
         on_arrival: Callable[[], None] | None = None,
+        raw: bool = False,
     ) -> None:
         self._stored: deque[Message] = deque(maxlen=qos.depth)
         self._on_arrival = on_arrival
         group = _NeverExecuted() if on_arrival is None else None
         self._depth = qos.depth
         self._subscription = node.create_subscription(
-            message_type, topic, self._store, qos, callback_group=group
+            message_type, topic, self._store, qos, callback_group=group, raw=raw
         )
 
     def drain(self) -> list[Message]:
@@ -68,11 +70,18 @@ class Inbox(Generic[Message]):
         subscription = self._subscription
         with subscription.handle:
             for _ in range(self._depth):
-                taken = subscription.handle.take_message(subscription.msg_type, False)
+                taken = subscription.handle.take_message(
+                    subscription.msg_type, subscription.raw
+                )
                 if taken is None:
                     break
                 messages.append(taken[0])
         return messages
+
+    @property
+    def topic(self) -> str:
+        """Resolved topic name."""
+        return str(self._subscription.topic_name)
 
     def _store(self, message: Message) -> None:
         self._stored.append(message)

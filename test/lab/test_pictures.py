@@ -20,7 +20,7 @@ from omega_turn_lab.pictures import (
     module_polygons,
     nice_step,
 )
-from omega_turn_lab.recording import RunRecord
+from omega_turn_lab.run_record import RunRecord
 from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.gaits.two_wave import TwoWaveGait
 from omega_turn_ros.mechanics.chain import PlanarChain

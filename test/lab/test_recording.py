@@ -24,7 +24,8 @@ from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 
-from omega_turn_lab.recording import BagRecorder, RunRecord, schema_text
+from omega_turn_lab.recording import BagRecorder, schema_text
+from omega_turn_lab.run_record import RunRecord
 from omega_turn_ros.errors import BadInputError
 
 DOMAIN = 97
@@ -125,24 +126,28 @@ def test_a_latched_message_sent_before_the_recorder_came_is_recorded(
     assert message.data == 1.25
 
 
-def test_log_time_is_the_simulated_time_of_the_node(graph: Graph, tmp_path: Path) -> None:
-    graph.listener.set_parameters([Parameter('use_sim_time', value=True)])
-    clock = graph.talker.create_publisher(Clock, '/clock', LATCHED)
-    publisher = graph.talker.create_publisher(Float64, 'value', 10)
-    path = tmp_path / 'run.mcap'
-    with BagRecorder(graph.listener, path, [('value', Float64, 10)]) as recorder:
+def test_log_time_is_the_stamp_and_unstamped_messages_take_the_one_before(
+    graph: Graph, tmp_path: Path
+) -> None:
+    states = graph.talker.create_publisher(JointState, 'joint_states', LATCHED)
+    angle = graph.talker.create_publisher(Float64, 'turn_angle', LATCHED)
+    topics = [('joint_states', JointState, LATCHED), ('turn_angle', Float64, LATCHED)]
+    with BagRecorder(graph.listener, tmp_path / 'run.mcap', topics) as recorder:
         graph.spin_until(
-            lambda: publisher.get_subscription_count() and clock.get_subscription_count()
+            lambda: states.get_subscription_count() and angle.get_subscription_count()
         )
-        for count, second in enumerate((3, 5), start=1):
-            clock.publish(Clock(clock=Time(sec=second, nanosec=1)))
-            graph.spin_until(partial(shows, graph.listener, second * 10**9 + 1))
-            publisher.publish(Float64(data=float(second)))
+        angle.publish(Float64(data=1.0))
+        for count, second in ((3, 3), (5, 5)):
+            message = JointState()
+            message.header.stamp = Time(sec=second, nanosec=1)
+            states.publish(message)
+            angle.publish(Float64(data=float(second)))
             graph.spin_until(partial(holds, recorder, count))
-    records = [record for record, _ in read_back(path)['/robot/value']]
-    assert [record.log_time for record in records] == [3_000_000_001, 5_000_000_001]
-    assert [record.publish_time for record in records] == [3_000_000_001, 5_000_000_001]
-    assert [record.sequence for record in records] == [1, 2]
+    found = read_back(tmp_path / 'run.mcap')
+    times = [3_000_000_001, 5_000_000_001]
+    assert [record.log_time for record, _ in found['/robot/joint_states']] == times
+    by_value = {m.data: record.log_time for record, m in found['/robot/turn_angle']}
+    assert by_value == {1.0: times[0], 3.0: times[0], 5.0: times[1]}
 
 
 def test_the_file_speaks_the_dialect_foxglove_and_plotjuggler_read(

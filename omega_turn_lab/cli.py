@@ -1,0 +1,105 @@
+"""The command line. Heavy imports wait until a command needs them."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from omega_turn_ros import __version__
+from omega_turn_ros.errors import OmegaTurnError
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run `omega_turn`; return the exit code: 0 done, 1 failed, 2 bad input, 130 interrupted."""
+    options = _parser().parse_args(arguments)
+    try:
+        return int(options.run(options))
+    except KeyboardInterrupt:
+        print('interrupted', file=sys.stderr)
+        return 130
+    except OmegaTurnError as error:
+        print(f'error: {error}', file=sys.stderr)
+        return 2 if isinstance(error, ValueError) else 1
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog='omega_turn', description='Omega turns for limbless robots.'
+    )
+    parser.add_argument('--version', action='version', version=__version__)
+    commands = parser.add_subparsers(required=True, metavar='COMMAND')
+    _add_demo(commands.add_parser('demo', help='turn a simulated robot, all nodes in one process'))
+    _add_turn(commands.add_parser('turn', help='command nodes that already run'))
+    _add_calibrate(commands.add_parser('calibrate', help='rebuild config/gaits'))
+    return parser
+
+
+def _add_demo(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('--turn-deg', type=_angle, default=90.0, help='+ = counter-clockwise')
+    parser.add_argument('--out', type=Path, default=Path('out'), help='folder for the files')
+    parser.add_argument('--gait', default='omega', help='name in config/gaits, or a path')
+    parser.add_argument('--robot', default='limbless16', help='name in config/robots, or a path')
+    parser.add_argument('--period', type=float, default=10.0, help='of a gait cycle [s]')
+    parser.add_argument('--heading-feedback', choices=('odom', 'none'), default='odom')
+    parser.add_argument('--compliance', choices=('on', 'off'), default='on')
+    parser.add_argument('--friction', type=float, default=0.5, help='of the ground')
+    parser.add_argument('--seed', type=int, default=0)
+    parser.add_argument('--gui', action='store_true', help="show PyBullet's window")
+    parser.set_defaults(run=_run_demo)
+
+
+def _add_turn(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('--deg', type=_angle, required=True, help='+ = counter-clockwise')
+    parser.add_argument('--namespace', default='', help='of the gait node')
+    parser.add_argument('--domain-id', type=int, default=None, help='default: ROS_DOMAIN_ID or 0')
+    parser.add_argument('--timeout', type=float, default=10.0, help='for the gait node [s]')
+    parser.set_defaults(run=_run_turn)
+
+
+def _add_calibrate(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('--robot', default='limbless16', help='name in config/robots, or a path')
+    parser.add_argument('--out', type=Path, default=Path('config/gaits'), help='folder to write')
+    parser.set_defaults(run=_run_calibrate)
+
+
+def _angle(text: str) -> float:
+    value = float(text)
+    if not abs(value) < 1e6:
+        raise argparse.ArgumentTypeError(f'{text}: expected a finite angle [deg]')
+    return value
+
+
+def _run_demo(options: argparse.Namespace) -> int:
+    from omega_turn_lab.demo import DemoOptions, run_demo
+
+    return run_demo(
+        DemoOptions(
+            turn_deg=options.turn_deg,
+            out=options.out,
+            gait=options.gait,
+            robot=options.robot,
+            period=options.period,
+            heading_feedback=options.heading_feedback,
+            compliance=options.compliance == 'on',
+            friction=options.friction,
+            seed=options.seed,
+            gui=options.gui,
+        )
+    )
+
+
+def _run_turn(options: argparse.Namespace) -> int:
+    from omega_turn_lab.turn import run_turn
+
+    return run_turn(options.deg, options.namespace, options.domain_id, options.timeout)
+
+
+def _run_calibrate(options: argparse.Namespace) -> int:
+    from omega_turn_lab.calibrate import run_calibrate
+
+    return run_calibrate(options.robot, options.out)
+
+
+if __name__ == '__main__':
+    sys.exit(main())

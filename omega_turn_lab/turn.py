@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import math
 import os
+import signal
 import sys
+import threading
 import time
+from collections.abc import Callable
 from typing import Any
 
 import omega_turn_lab.ros_environment  # noqa: F401  (first: it may restart the interpreter)
 import rclpy
 from rclpy.context import Context
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from std_msgs.msg import Float64
@@ -19,6 +22,7 @@ from tqdm import tqdm
 
 from omega_turn_lab.live import NodeError
 from omega_turn_ros.nodes.qos import LATCHED, REQUEST
+from omega_turn_ros.nodes.runner import ENDINGS
 
 
 class TurnClient(Node):
@@ -70,21 +74,24 @@ def run_turn(deg: float, namespace: str, domain_id: int | None, timeout: float) 
     client = TurnClient(context, namespace=namespace)
     executor = SingleThreadedExecutor(context=context)
     executor.add_node(client)
+    # A flag, not KeyboardInterrupt: that would break into the middle of rclpy.
+    interrupted = threading.Event()
+    old = {s: signal.signal(s, lambda *_: interrupted.set()) for s in ENDINGS}
     try:
-        _wait(executor, lambda: client.connected, timeout, _missing(domain_id))
+        _wait(executor, lambda: client.connected, timeout, _missing(domain_id), interrupted)
         client.send(math.radians(deg))
         if deg != 0.0:
             what = 'the gait node to accept the turn (stopped? call gait_node/reset)'
-            _wait(executor, lambda: client.remaining != 0.0, timeout, what)
-        _follow(executor, client, abs(deg))
-    except KeyboardInterrupt:
-        client.send(0.0)
-        _wait(executor, lambda: client.remaining == 0.0, timeout, 'the turn to end')
-        print('turn ended on request', file=sys.stderr)
-        return 130
-    except ExternalShutdownException:
-        return 0
+            _wait(executor, lambda: client.remaining != 0.0, timeout, what, interrupted)
+        _follow(executor, client, abs(deg), interrupted)
+        if interrupted.is_set():
+            client.send(0.0)
+            _wait(executor, lambda: client.remaining == 0.0, timeout, 'the turn to end')
+            print('turn ended on request', file=sys.stderr)
+            return 130
     finally:
+        for number, handler in old.items():
+            signal.signal(number, handler)
         client.destroy_node()
         context.try_shutdown()
     print(f'turned {deg:+.1f} deg')
@@ -99,21 +106,33 @@ def _missing(domain_id: int | None) -> str:
     )
 
 
-def _wait(executor: SingleThreadedExecutor, condition: Any, timeout: float, what: str) -> None:
+def _wait(
+    executor: SingleThreadedExecutor,
+    condition: Callable[[], bool],
+    timeout: float,
+    what: str,
+    interrupted: threading.Event | None = None,
+) -> None:
     end = time.monotonic() + timeout
-    while not condition():
+    while not condition() and not (interrupted is not None and interrupted.is_set()):
         if time.monotonic() > end:
             raise NodeError(f'waited {timeout:g} s in vain for {what}')
         executor.spin_once(timeout_sec=0.05)
 
 
-def _follow(executor: SingleThreadedExecutor, client: TurnClient, size_deg: float) -> None:
+def _follow(
+    executor: SingleThreadedExecutor,
+    client: TurnClient,
+    size_deg: float,
+    interrupted: threading.Event,
+) -> None:
     bar_format = '{desc} {percentage:3.0f}%|{bar}| {n:.1f}/{total:.1f} deg [{elapsed}]'
     with tqdm(total=size_deg, desc='turning', bar_format=bar_format, mininterval=0.2) as bar:
-        while client.remaining != 0.0:
+        while client.remaining != 0.0 and not interrupted.is_set():
             executor.spin_once(timeout_sec=0.1)
             left = abs(math.degrees(client.remaining or 0.0))
             bar.n = min(max(size_deg - left, 0.0), size_deg)
             bar.update(0)
-        bar.n = size_deg
+        if client.remaining == 0.0:
+            bar.n = size_deg
         bar.refresh()

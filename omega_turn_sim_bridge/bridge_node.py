@@ -97,8 +97,8 @@ class PyBulletBridge(Node):
 
     def __init__(self, context: Context | None = None, **options: Any) -> None:
         super().__init__('pybullet_bridge', context=context, **options)
-        self._parameters = NodeParameters(self, BRIDGE_PARAMETERS, self._accept, self._apply)
-        values = self._parameters
+        self._settings = NodeParameters(self, BRIDGE_PARAMETERS, self._accept, self._apply)
+        values = self._settings
         self._robot = load_robot(values['robot'])
         self._health = Health(self)
         self._command_seen = Freshness(values['command_timeout'])
@@ -131,22 +131,22 @@ class PyBulletBridge(Node):
 
     def _start_nanoseconds(self) -> int:
         """Stamps count from 0 where the bridge is the clock, else from now."""
-        if self._parameters['publish_clock']:
+        if self._settings['publish_clock']:
             return 0
         return int(self.get_clock().now().nanoseconds)
 
     def _make_topics(self) -> None:
         names = self._robot.joint_names
         self._reader = JointReader(names)
-        on_command = self._on_command if self._parameters['lock_step'] else None
+        on_command = self._on_command if self._settings['lock_step'] else None
         self._commands = Inbox(self, JointState, 'joint_commands', COMMAND, on_command)
         self._states = self.create_publisher(JointState, 'joint_states', STATE)
-        self._writer = JointWriter(names, self._parameters['body_frame'])
+        self._writer = JointWriter(names, self._settings['body_frame'])
         self._odom = self.create_publisher(Odometry, 'odom', STATE)
-        self._odometry = Odometry(child_frame_id=self._parameters['body_frame'])
-        self._odometry.header.frame_id = self._parameters['odom_frame']
+        self._odometry = Odometry(child_frame_id=self._settings['body_frame'])
+        self._odometry.header.frame_id = self._settings['odom_frame']
         self._clock_publisher = None
-        if self._parameters['publish_clock']:
+        if self._settings['publish_clock']:
             self._clock_publisher = self.create_publisher(Clock, '/clock', STATE)
         self.create_service(Trigger, '~/reset', self._on_reset)
         self.create_service(Trigger, '~/pause', self._on_pause)
@@ -164,20 +164,20 @@ class PyBulletBridge(Node):
         self._timer.timer_period_ns = round(self._wall_period() * 1e9)
 
     def _wall_period(self) -> float:
-        factor = self._parameters['real_time_factor']
-        if self._parameters['lock_step']:
+        factor = self._settings['real_time_factor']
+        if self._settings['lock_step']:
             return ASK_AGAIN
         return self._reading_period / factor if factor else IDLE_PERIOD
 
     def _on_timer(self) -> None:
         if self._paused:
             return
-        if not self._parameters['lock_step']:
+        if not self._settings['lock_step']:
             self._read_commands()
             self._step()
             return
         self._waited += ASK_AGAIN
-        if self._waited < self._parameters['lock_step_timeout']:
+        if self._waited < self._settings['lock_step_timeout']:
             self._publish()
             return
         self._health.warn('lock_step', 'lock step: no command for this reading, going on')

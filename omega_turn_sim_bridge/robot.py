@@ -90,7 +90,7 @@ def _add_body(
     for k in range(segments):
         # Neighbouring modules put the front foot on opposite sides, so no turn is favoured.
         handed = 1.0 if (first_segment + k) % 2 == 0 else -1.0
-        middle = centre - 0.5 * length + (k + 0.5) * span
+        middle = centre + 0.5 * length - (k + 0.5) * span
         for end, side in ((1.0, handed), (-1.0, -handed)):
             collision = ET.SubElement(link, 'collision')
             x, y = middle + end * GAUSS * span, side * STANCE

@@ -119,7 +119,11 @@ class Simulation:
         self._mass_fractions = robot.body_masses / robot.body_masses.sum()
         self._behind = self._fraction_behind_joints()
         self._steps = 0
-        self._build()
+        try:
+            self._build()
+        except BaseException:
+            self.close()
+            raise
 
     def __enter__(self) -> Simulation:
         """Return the simulation itself."""
@@ -150,7 +154,12 @@ class Simulation:
         return self._body
 
     def reset(self) -> None:
-        """Put the robot back: straight along x, mean body frame at the origin, at rest."""
+        """Put the robot back: straight along x, mean body frame at the origin, at rest.
+
+        Raises:
+            SimulationError: the client has been closed.
+        """
+        self._check_open()
         front = self.robot.length * 0.5 - self.robot.head_length
         position = (front, 0.0, ride_height(self.robot))
         pybullet.resetBasePositionAndOrientation(
@@ -164,6 +173,7 @@ class Simulation:
         self._reference = np.zeros(self.robot.n_joints)
         self._target = np.zeros(self.robot.n_joints)
         self._base_yaw = 0.0
+        self._just_reset = True
         self._rng = np.random.default_rng(self.config.seed)
 
     def command(self, positions: ArrayLike) -> None:
@@ -189,8 +199,7 @@ class Simulation:
         Raises:
             SimulationError: the client has been closed.
         """
-        if self._client < 0:
-            raise SimulationError('the simulation is closed')
+        self._check_open()
         reach = self._velocity_limit * self.config.time_step
         for left in range(count, 0, -1):
             # Spread the way to the target over the steps of this call, as a servo interpolates.
@@ -209,16 +218,21 @@ class Simulation:
             )
             pybullet.stepSimulation(physicsClientId=self._client)
             self._steps += 1
+            self._just_reset = False
 
     def observe(self) -> Observation:
         """Read joints and mean body frame.
 
         Raises:
-            SimulationError: the physics has left the realm of finite numbers.
+            SimulationError: the client has been closed, or the physics has left the realm of
+                finite numbers.
         """
+        self._check_open()
         states = pybullet.getJointStates(self._body, self._joints, physicsClientId=self._client)
         table = np.array([(s[JOINT_POSITION], s[JOINT_VELOCITY], s[JOINT_MOTOR_TORQUE]) for s in states])
         positions, velocities, efforts = table.T
+        if self._just_reset:
+            efforts = np.zeros_like(efforts)  # PyBullet still tells those of the last step
         pose, twist = self._mean_body_frame(positions, velocities)
         if not (np.isfinite(table).all() and np.isfinite(pose).all()):
             raise SimulationError(f'not finite at t = {self.time:.3f} s: the scene has exploded')
@@ -229,7 +243,12 @@ class Simulation:
         return Observation(self.time, positions, velocities, efforts, pose, twist)
 
     def hold_posture(self) -> None:
-        """Make the present posture the motor target."""
+        """Make the present posture the motor target.
+
+        Raises:
+            SimulationError: the client has been closed.
+        """
+        self._check_open()
         states = pybullet.getJointStates(self._body, self._joints, physicsClientId=self._client)
         self.command([s[JOINT_POSITION] for s in states])
 
@@ -238,6 +257,10 @@ class Simulation:
         if self._client >= 0:
             pybullet.disconnect(physicsClientId=self._client)
             self._client = -1
+
+    def _check_open(self) -> None:
+        if self._client < 0:
+            raise SimulationError('the simulation is closed')
 
     def _build(self) -> None:
         client, config = self._client, self.config

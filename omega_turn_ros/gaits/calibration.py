@@ -12,6 +12,8 @@ from omega_turn_ros.errors import BadInputError
 
 Array = NDArray[np.float64]
 
+SMALLEST_ANGLE = 1e-3  # [rad] a gait that turns less per cycle does not turn: tables carry 1e-6
+
 
 @dataclass(frozen=True, slots=True)
 class Calibration:
@@ -55,8 +57,9 @@ class Calibration:
             raise BadInputError('calibration heading', self.heading.shape, f'({count}, phases)')
         if self.bend_heading.shape != (count,):
             raise BadInputError('calibration bend_heading', self.bend_heading.shape, f'({count},)')
-        if self.largest_angle <= 0.0:
-            raise BadInputError('calibration heading', self.largest_angle, 'an angle > 0 [rad]')
+        if self.largest_angle < SMALLEST_ANGLE:
+            expected = f'an angle per cycle of at least {SMALLEST_ANGLE} rad'
+            raise BadInputError('calibration heading', self.largest_angle, expected)
 
     @property
     def angles(self) -> Array:

@@ -34,6 +34,7 @@ Array = NDArray[np.float64]
 AT_REST = 1e-3  # [rad] from the rest shape: nothing to unbend
 SAME_SHAPE = 1e-4  # [rad] between start shapes: no move needed
 NEGLIGIBLE_TURN = 1e-6  # [rad]
+LARGEST_TURN = 1e9  # [rad] two centuries of turning; doubles still resolve its progress
 GATE_TIME = 0.5  # [s] over which a cycle lets amplitude offsets in and, at its end, out again
 SETTLE_TIME = 0.3  # [s] the robot lags its command before the heading is judged
 RATIO_RANGE = (0.3, 3.0)  # of measured to predicted angle per cycle worth believing
@@ -86,10 +87,11 @@ class GaitController:
         """Take over a new turn, relative to the present heading; 0 ends the turn.
 
         Raises:
-            BadInputError: the angle is not finite, or the controller is stopped.
+            BadInputError: the angle is not finite or too large, or the controller is stopped.
         """
-        if not math.isfinite(angle):
-            raise BadInputError('turn_angle', angle, 'a finite angle [rad]')
+        if not abs(angle) <= LARGEST_TURN:  # also catches NaN
+            expected = f'a finite angle within +-{LARGEST_TURN:g} rad'
+            raise BadInputError('turn_angle', angle, expected)
         if state.mode is Mode.STOPPED:
             raise BadInputError('turn_angle', angle, 'no command while stopped: call reset first')
         goal = None if abs(angle) < NEGLIGIBLE_TURN else angle

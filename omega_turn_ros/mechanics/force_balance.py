@@ -59,7 +59,7 @@ def solve_balance(points: Array, velocities: Array, weights: Array) -> Array:
     Raises:
         ConvergenceError: Newton's method stopped short of the tolerance.
     """
-    speed = np.einsum('j,bjx->b', weights / weights.sum(), np.abs(velocities))
+    speed = _mean_speed(velocities, weights)
     moving = speed > 0.0
     xi = np.zeros((points.shape[0], 3))
     if not moving.any():
@@ -75,6 +75,12 @@ def solve_balance(points: Array, velocities: Array, weights: Array) -> Array:
     xi[moving] = solution * speed[moving, None]
     xi[moving, 2] /= size
     return xi
+
+
+def _mean_speed(velocities: Array, weights: Array) -> Array:
+    """Weighted mean of |v_x| + |v_y| of each shape, shape (B,)."""
+    mean: Array = np.einsum('j,bjx->b', weights / weights.sum(), np.abs(velocities))
+    return mean
 
 
 def _newton(p: Array, v: Array, w: Array, xi: Array, epsilon: float) -> Array:
@@ -177,8 +183,9 @@ def joint_torques(
 
 
 def _torques_of_slip(chain: PlanarChain, state: ShapeState, slip: Array, mu: float) -> Array:
-    speed = np.sqrt((slip**2).sum(axis=-1))
-    scale = np.maximum(speed, SMOOTHING[-1] * np.maximum(speed.max(axis=-1, keepdims=True), 1e-12))
+    # Smoothed as in the balance: only then do the forces of sticking points add up to zero.
+    epsilon = SMOOTHING[-1] * _mean_speed(state.velocities, chain.normal_forces)[:, None]
+    scale = np.sqrt((slip**2).sum(axis=-1) + np.maximum(epsilon, 1e-150) ** 2)
     force = -mu * chain.normal_forces[:, None] * slip / scale[..., None]
     behind = chain.link_of_point[None, :] > np.arange(chain.n_joints)[:, None]  # (N, P)
     moment = state.points[..., 0] * force[..., 1] - state.points[..., 1] * force[..., 0]

@@ -100,20 +100,21 @@ class AdmittanceNode(Node):
 
     def __init__(self, context: Context | None = None, **options: Any) -> None:
         super().__init__('admittance_node', context=context, **options)
-        self._parameters = NodeParameters(
+        self._settings = NodeParameters(
             self, ADMITTANCE_PARAMETERS, self._accept, self._apply
         )
-        self._robot = load_robot(self._parameters['robot'])
+        self._robot = load_robot(self._settings['robot'])
         self._yaw = self._robot.yaw_indices
         self._health = Health(self)
-        self._apply(self._parameters.values)
+        self._efforts_seen, self._phases_seen = Freshness(), Freshness()
+        self._apply(self._settings.values)
         self._state = self._controller.initial_state()
         self._time = StepTimer(0.025, 0.01)
         self._relax_time = StepTimer(2.0 * WATCHDOG_PERIOD)
         self._phases: JointState | None = None
         self._answered = -1
         self._stamp = Time()
-        lock_step = self._parameters['lock_step']
+        lock_step = self._settings['lock_step']
         qos = STATE if lock_step else STATE_INPUT
         self._lock_step = lock_step
         self._joint_states = Inbox(self, JointState, 'joint_states', qos, self._on_joint_states)
@@ -133,8 +134,7 @@ class AdmittanceNode(Node):
         self._controller = make_compliance(values, self._robot)
         self._reader = JointReader(self._robot.joint_names, values['ignore_unknown_joints'])
         self._wave_reader = JointReader(WAVES)
-        self._efforts_seen = Freshness(values['effort_timeout'])
-        self._phases_seen = Freshness(values['effort_timeout'])
+        self._efforts_seen.timeout = self._phases_seen.timeout = values['effort_timeout']
 
     def _on_joint_states(self) -> None:
         for message in self._joint_states.drain():

@@ -47,11 +47,12 @@ class GaitNode(Node):
     def __init__(self, context: Context | None = None, **options: Any) -> None:
         super().__init__('gait_node', context=context, **options)
         self._state = ControllerState()
-        self._parameters = NodeParameters(self, GAIT_PARAMETERS, self._accept, self._apply)
-        self._robot = load_robot(self._parameters['robot'])
+        self._settings = NodeParameters(self, GAIT_PARAMETERS, self._accept, self._apply)
+        self._robot = load_robot(self._settings['robot'])
         self._health = Health(self)
-        self._apply(self._parameters.values)
-        self._period = 1.0 / self._parameters['rate']
+        self._states_seen, self._odom_seen, self._amplitudes_seen = (Freshness() for _ in range(3))
+        self._apply(self._settings.values)
+        self._period = 1.0 / self._settings['rate']
         self._time = StepTimer(2.5 * self._period, self._period)
         self._inputs = Inputs()
         self._heading: float | None = None
@@ -72,7 +73,7 @@ class GaitNode(Node):
         return int(self._state.cycles)
 
     def _make_topics(self) -> None:
-        self._lock_step = self._parameters['lock_step']
+        self._lock_step = self._settings['lock_step']
         on_question = self._on_question if self._lock_step else None
         on_state = self._on_lock_step if self._lock_step else None
         on_request = self._read_requests if self._lock_step else None
@@ -83,7 +84,7 @@ class GaitNode(Node):
         self._amplitudes = Inbox(self, JointState, 'wave_amplitudes', state_qos, on_state)
         self._stamps = {'joint_states': -1, 'odom': -1, 'wave_amplitudes': -1}
         self._commands = CommandOutput(
-            self, self._parameters['command_interface'], self._robot.joint_names, self._period
+            self, self._settings['command_interface'], self._robot.joint_names, self._period
         )
         self._phases = self.create_publisher(JointState, 'wave_phases', COMMAND)
         self._phase_writer = JointWriter(WAVES)
@@ -92,17 +93,21 @@ class GaitNode(Node):
         self.create_service(Trigger, '~/reset', self._on_reset)
 
     def _accept(self, values: Mapping[str, Any]) -> None:
-        make_controller(values, load_robot(values['robot']))
-        if self._state.goal is not None and values['gait'] != self._parameters['gait']:
+        limit = make_controller(values, load_robot(values['robot'])).limits.position
+        reached = 0.0 if self._state.command is None else np.abs(self._state.command).max()
+        if reached > limit:
+            expected = f'at least {reached:.4g} rad, where the robot is'
+            raise BadInputError('parameter position_limit', limit, expected)
+        if self._state.goal is not None and values['gait'] != self._settings['gait']:
             raise BadInputError('parameter gait', values['gait'], 'no change during a turn')
 
     def _apply(self, values: Mapping[str, Any]) -> None:
         self._controller = make_controller(values, self._robot)
         self._joint_reader = JointReader(self._robot.joint_names, values['ignore_unknown_joints'])
         self._wave_reader = JointReader(WAVES)
-        self._states_seen = Freshness(values['state_timeout'])
-        self._odom_seen = Freshness(values['odom_timeout'])
-        self._amplitudes_seen = Freshness(values['amplitude_timeout'])
+        self._states_seen.timeout = values['state_timeout']
+        self._odom_seen.timeout = values['odom_timeout']
+        self._amplitudes_seen.timeout = values['amplitude_timeout']
 
     def _on_timer(self) -> None:
         now = self.get_clock().now()
@@ -121,8 +126,8 @@ class GaitNode(Node):
         """Step once every input of one instant has arrived."""
         self._read_inputs()
         stamp = self._stamps['joint_states']
-        needed = ['odom'] if self._parameters['heading_feedback'] == 'odom' else []
-        needed += ['wave_amplitudes'] if self._parameters['use_compliance'] else []
+        needed = ['odom'] if self._settings['heading_feedback'] == 'odom' else []
+        needed += ['wave_amplitudes'] if self._settings['use_compliance'] else []
         if stamp == self._answered or any(self._stamps[name] != stamp for name in needed):
             return
         self._answered = stamp
@@ -168,17 +173,18 @@ class GaitNode(Node):
                 self._stamps['wave_amplitudes'] = nanoseconds_of(message.header.stamp)
                 self._amplitudes_seen.mark()
         self._heading = heading
-        compliant = self._parameters['use_compliance'] and self._amplitudes_seen.fresh
+        compliant = self._settings['use_compliance'] and self._amplitudes_seen.fresh
         self._inputs = Inputs(
             positions,
             self._states_seen.fresh,
-            heading if self._odom_seen.fresh else None,
+            heading,
             offsets if compliant else (0.0, 0.0),
         )
 
     def _advance(self, dt: float, stamp: Time) -> None:
         was_turning = self._state.goal is not None
         self._state, self._output = self._controller.step(self._state, self._inputs, dt)
+        self._heading = None  # a measurement counts once; until the next one the model predicts
         self._publish_output(stamp)
         self._ticks += 1
         if self._ticks % REMAINING_EVERY == 0 or was_turning != (self._state.goal is not None):
@@ -214,7 +220,7 @@ class GaitNode(Node):
         return response
 
     def _publish_health(self) -> None:
-        state, values = self._state, self._parameters.values
+        state, values = self._state, self._settings.values
         problems = []
         if state.mode is Mode.STOPPED:
             problems.append('stopped: call reset')

@@ -23,7 +23,7 @@ class Freshness:
         timeout: [s]; 0 never goes stale once something has arrived.
     """
 
-    def __init__(self, timeout: float) -> None:
+    def __init__(self, timeout: float = 0.0) -> None:
         self.timeout = timeout
         self._last: float | None = None
 

@@ -27,7 +27,7 @@ class JointReader:
     def __init__(self, names: tuple[str, ...], ignore_unknown: bool = False) -> None:
         self._names = names
         self._ignore_unknown = ignore_unknown
-        self._seen: list[str] = []
+        self._seen: list[str] | None = None
         self._order: NDArray[np.intp] = np.zeros(0, np.intp)
 
     def read(self, message: JointState, field: str) -> Array:
@@ -40,17 +40,20 @@ class JointReader:
         Raises:
             BadInputError: see the class.
         """
-        if message.name != self._seen:
-            self._order = self._find_order(list(message.name))
-            self._seen = list(message.name)
+        names = message.name
+        if names != self._seen:
+            self._order = self._find_order(names)
+            self._seen = list(names)
         data = getattr(message, field)
-        if len(data) != len(self._seen):
-            expected = f'{len(self._seen)} numbers, one per name'
-            raise BadInputError(field, f'{len(data)} numbers', expected)
+        if len(data) != len(names):
+            raise BadInputError(
+                field, f'{len(data)} numbers', f'{len(names)} numbers, one per name'
+            )
         values: Array = np.array(data, float)[self._order]
         if not np.isfinite(values).all():
-            joint = self._names[int(np.flatnonzero(~np.isfinite(values))[0])]
-            raise BadInputError(f'{field} of {joint}', float('nan'), 'a finite number')
+            bad = int(np.flatnonzero(~np.isfinite(values))[0])
+            name, value = self._names[bad], float(values[bad])
+            raise BadInputError(f'{field} of {name}', value, 'a finite number')
         return values
 
     def _find_order(self, names: list[str]) -> NDArray[np.intp]:

@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from rig import Rig
 
 from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.gaits.controller import GATE_TIME, GaitController
@@ -15,12 +16,12 @@ from omega_turn_ros.gaits.library import LibraryGait, load_gait
 from omega_turn_ros.gaits.turn_plan import plan_turn
 from omega_turn_ros.robot import Robot
 
-MakeRig = Callable[..., 'Rig']  # noqa: F821  (the fixture's class lives in conftest.py)
+MakeRig = Callable[..., Rig]
 TOLERANCE = math.radians(1.0)  # the default heading tolerance
 ANGLES = [1e-5, 0.02, -0.3, 1.0, 1.7, 3.3, -7.0]  # [rad]
 
-# Interpolated tables are good for 0.05 deg per cycle at these scales, and the straight lines between
-# 20 commands per second cut the corners of the path by about as much.
+# Interpolated tables are good for 0.05 deg per cycle at these scales, and the straight lines
+# between 20 commands per second cut the corners of the path by about as much.
 PER_CYCLE = math.radians(0.15)
 
 
@@ -210,7 +211,7 @@ def test_turn_that_is_not_finite_is_refused_by_name_and_changes_nothing(
 ) -> None:
     rig = make_rig()
     rig.ask(1.0)
-    with pytest.raises(BadInputError, match='^turn_angle: '):
+    with pytest.raises(BadInputError, match=r'^turn_angle: '):
         rig.ask(angle)
     assert rig.state.remaining == 1.0
 
@@ -381,14 +382,24 @@ def test_slow_commands_need_no_more_cycles(make_rig: MakeRig) -> None:
     assert rig.state.cycles == 1
 
 
-def test_largest_double_is_a_turn_like_any_other(make_rig: MakeRig) -> None:
-    for name in ('geometric', 'omega'):
-        rig = make_rig(gait=load_gait(name), heading_feedback=True)
-        try:
-            rig.ask(1.7e308)
-        except BadInputError as error:
-            assert error.field in ('angle', 'turn_angle')
-        rig.step(300)
-        rig.ask(0.0)
-        rig.finish()
-        assert rig.state.remaining == 0.0
+@pytest.mark.parametrize('name', ['geometric', 'omega'])
+@pytest.mark.parametrize('angle', [1e9, -1e9])
+def test_turn_of_centuries_starts_like_any_other_on_any_ground(
+    make_rig: MakeRig, name: str, angle: float
+) -> None:
+    rig = make_rig(0.3, gait=load_gait(name), heading_feedback=True)
+    rig.ask(angle)
+    rig.step(500)
+    assert rig.state.cycles >= 2
+    assert 0.0 < abs(angle) - abs(rig.state.remaining) < 10.0
+    rig.ask(0.0)
+    rig.finish()
+    assert rig.state.remaining == 0.0
+
+
+@pytest.mark.parametrize('angle', [1.7e308, -1e10])
+def test_turn_beyond_counting_is_refused_by_name(make_rig: MakeRig, angle: float) -> None:
+    rig = make_rig()
+    with pytest.raises(BadInputError, match=r'^turn_angle: '):
+        rig.ask(angle)
+    assert rig.state.goal is None

@@ -86,18 +86,18 @@ def test_no_turn_needs_no_cycle(omega: LibraryGait) -> None:
 
 @pytest.mark.parametrize('bad', [math.nan, math.inf, -math.inf])
 def test_angle_that_is_not_finite_is_refused_by_name(omega: LibraryGait, bad: float) -> None:
-    with pytest.raises(BadInputError, match='^angle: '):
+    with pytest.raises(BadInputError, match=r'^angle: '):
         plan_turn(bad, omega.calibration)
 
 
 @pytest.mark.parametrize('largest', [1.7e308, -1.7e308])
 @pytest.mark.parametrize('name', sorted(TABLES))
 def test_angle_beyond_any_count_of_cycles_is_refused_by_name(name: str, largest: float) -> None:
-    with pytest.raises(BadInputError, match='^angle: '):
+    with pytest.raises(BadInputError, match=r'^angle: '):
         plan_turn(largest, TABLES[name], 0.3)
 
 
 @pytest.mark.parametrize('bad', [0.0, -1.0, math.nan, math.inf])
 def test_ground_ratio_without_meaning_is_refused_by_name(omega: LibraryGait, bad: float) -> None:
-    with pytest.raises(BadInputError, match='^ground_ratio: '):
+    with pytest.raises(BadInputError, match=r'^ground_ratio: '):
         plan_turn(1.0, omega.calibration, bad)

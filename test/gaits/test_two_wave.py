@@ -68,9 +68,7 @@ def test_template_with_equal_frequencies_is_the_geometric_turn(
     template = two_wave_angles(a_f, tau, a_t, tau + psi, k_f, k_f, n)
     expected = [r_1 * math.sin(x) + r_2 * math.cos(x) for x in position]
     np.testing.assert_allclose(template, expected, rtol=0, atol=ROUNDING)
-    np.testing.assert_allclose(
-        template, geometric_turn(r_1, r_2, k_f, n), rtol=0, atol=ROUNDING
-    )
+    np.testing.assert_allclose(template, geometric_turn(r_1, r_2, k_f, n), rtol=0, atol=ROUNDING)
 
 
 @SEEDED

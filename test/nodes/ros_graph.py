@@ -20,16 +20,16 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter, parameter_value_to_python
 from rclpy.parameter_client import AsyncParameterClient
 from rclpy.publisher import Publisher
-from rclpy.qos import QoSProfile
+from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import Float64
 from std_srvs.srv import Trigger
 
-from omega_turn_ros.nodes.qos import LATCHED
 
 AnyNode = TypeVar('AnyNode', bound=Node)
 
 PATIENCE = 30.0  # [s] a test waits for something before it fails
 DEEP = QoSProfile(depth=10_000)  # a listener that misses nothing
+LATCHED = QoSProfile(depth=10_000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class Graph:
@@ -140,10 +140,10 @@ class User:
         (result,) = self._answer(client.set_parameters([Parameter(name, value=value)]), node).results
         return result
 
-    def get_parameter(self, node: str, name: str) -> Any:
-        """Read a parameter as `ros2 param get` does."""
-        (value,) = self._answer(self._parameter_client(node).get_parameters([name]), node).values
-        return parameter_value_to_python(value)
+    def get_parameters(self, node: str, names: list[str]) -> list[Any]:
+        """Read parameters as `ros2 param get` does."""
+        answer = self._answer(self._parameter_client(node).get_parameters(names), node)
+        return [parameter_value_to_python(value) for value in answer.values]
 
     def fact(self, node: str, key: str) -> str:
         """Return what the next diagnostics of a node say about `key`, '' for nothing."""

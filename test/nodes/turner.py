@@ -228,13 +228,15 @@ class Turner:
             parameters.get('velocity_limit', ROBOT.velocity_limit),
             parameters.get('step_limit', 0.1),
         )
-        self.watch = CommandWatch(self.user.node, limits, self.robot.posture)
+        start = np.clip(self.robot.posture, -limits.position, limits.position)
+        self.watch = CommandWatch(self.user.node, limits, start)
         self.node = graph.add(GaitNode, below, use_sim_time=clock, **parameters)
 
     def start_turn(self, angle: float) -> None:
         """Ask for a turn [rad] and wait until it has been accepted."""
+        remaining, before = self.user.remaining, len(self.user.remaining)
         self.user.turn(angle)
-        self.graph.spin_until(lambda: angle in self.user.remaining, f'turn_remaining {angle}')
+        self.graph.spin_until(lambda: angle in remaining[before:], f'turn_remaining {angle}')
 
     def wait_for_commands(self, count: int) -> Array:
         """Wait for so many more commands and return them [rad], shape (count, n_joints)."""

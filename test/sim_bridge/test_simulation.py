@@ -1,0 +1,316 @@
+"""The physics behind four verbs: real PyBullet, in this process."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+import pybullet
+import pytest
+from scene import body_centres, normal_forces
+
+from omega_turn_ros.errors import BadInputError, SimulationError
+from omega_turn_ros.robot import Robot, load_robot
+from omega_turn_sim_bridge.robot import FOOT_CLEARANCE, ride_height
+from omega_turn_sim_bridge.simulation import Observation, Simulation, SimulationConfig
+from omega_turn_sim_bridge.terrain import TERRAINS
+
+FIELDS = ('positions', 'velocities', 'efforts', 'pose', 'twist')
+
+
+@pytest.fixture(scope='module')
+def robot() -> Robot:
+    return load_robot('limbless16')
+
+
+@pytest.fixture
+def simulation(robot: Robot) -> Iterator[Simulation]:
+    with Simulation(robot) as made:
+        yield made
+
+
+def wriggle(simulation: Simulation, k: int) -> Observation:
+    """Command the k-th posture of a lopsided wave and take two steps."""
+    joints = np.arange(simulation.robot.n_joints)
+    posture = np.where(joints % 2 == 0, 0.2 + 0.5 * np.sin(0.1 * k + joints), 0.0)
+    simulation.command(posture)
+    simulation.step(2)
+    return simulation.observe()
+
+
+def assert_same(one: Observation, other: Observation) -> None:
+    """Equal to the last bit."""
+    for field in FIELDS:
+        np.testing.assert_array_equal(getattr(one, field), getattr(other, field), err_msg=field)
+
+
+def test_robot_stands_straight_still_and_centred_at_the_start(simulation: Simulation) -> None:
+    seen = simulation.observe()
+    for field in FIELDS:
+        np.testing.assert_allclose(getattr(seen, field), 0.0, atol=1e-12, err_msg=field)
+    centres = body_centres(simulation)
+    assert (np.diff(centres[:, 0]) < 0.0).all()  # head first, looking along x
+    assert simulation.time == 0.0
+
+
+def test_feet_share_the_robot_s_weight_evenly_and_hold_the_body_clear(
+    simulation: Simulation,
+) -> None:
+    robot = simulation.robot
+    simulation.step(200)
+    forces = normal_forces(simulation)
+    assert forces.sum() == pytest.approx(robot.weight, rel=1e-3)
+    assert forces.size == 2 * round(robot.length / robot.module_length)
+    # Rigid feet shared it between 0 and ten times the mean.
+    np.testing.assert_allclose(forces, forces.mean(), rtol=0.05)
+    heights = body_centres(simulation)[:, 2]
+    assert heights.max() < ride_height(robot)  # so the feet do touch
+    assert heights.min() > ride_height(robot) - 0.5 * FOOT_CLEARANCE
+
+
+def test_resting_robot_stays_where_it_is(simulation: Simulation) -> None:
+    simulation.step(400)
+    seen = simulation.observe()
+    assert np.abs(seen.pose).max() < 1e-5
+    assert np.abs(seen.positions).max() < 1e-4
+    assert np.abs(seen.efforts[simulation.robot.yaw_indices]).max() < 0.01
+
+
+def test_two_runs_are_the_same_to_the_last_bit_and_do_not_disturb_each_other(
+    robot: Robot,
+) -> None:
+    with Simulation(robot) as alone:
+        expected = [wriggle(alone, k) for k in range(40)]
+    with Simulation(robot) as one, Simulation(robot) as other:
+        for k in range(40):
+            assert_same(wriggle(one, k), expected[k])
+            other.command(np.full(robot.n_joints, -0.4))
+            other.step(3)
+        assert not np.array_equal(other.observe().positions, expected[-1].positions)
+
+
+def test_reset_puts_everything_back_but_the_time(robot: Robot) -> None:
+    with Simulation(robot, SimulationConfig(position_noise=0.01, seed=5)) as simulation:
+        fresh = simulation.observe()
+        first = [wriggle(simulation, k) for k in range(40)]
+        time = simulation.time
+        simulation.reset()
+        assert_same(simulation.observe(), fresh)
+        assert simulation.time == time
+        for k in range(40):
+            assert_same(wriggle(simulation, k), first[k])
+
+
+def test_reset_forgets_the_command(simulation: Simulation) -> None:
+    simulation.command(np.full(simulation.robot.n_joints, 0.5))
+    simulation.step(20)
+    simulation.reset()
+    simulation.step(20)
+    assert np.abs(simulation.observe().positions).max() < 1e-3
+
+
+def test_noise_has_its_size_and_follows_its_seed(robot: Robot) -> None:
+    def readings(seed: int) -> np.ndarray:
+        config = SimulationConfig(position_noise=0.02, effort_noise=0.3, seed=seed)
+        with Simulation(robot, config) as simulation:
+            seen = [simulation.observe() for _ in range(40)]
+        return np.array([[s.positions, s.efforts] for s in seen])
+
+    one, again, other = readings(1), readings(1), readings(2)
+    np.testing.assert_array_equal(one, again)
+    assert not np.array_equal(one, other)
+    # 640 samples: the standard deviation is known to 3 %, four times that is allowed.
+    assert one[:, 0].std() == pytest.approx(0.02, rel=0.12)
+    assert one[:, 1].std() == pytest.approx(0.3, rel=0.12)
+
+
+def test_noise_is_in_the_readings_only(robot: Robot, simulation: Simulation) -> None:
+    config = SimulationConfig(position_noise=0.02, effort_noise=0.3, seed=1)
+    with Simulation(robot, config) as noisy:
+        for k in range(20):
+            exact, blurred = wriggle(simulation, k), wriggle(noisy, k)
+        np.testing.assert_array_equal(blurred.pose, exact.pose)
+        np.testing.assert_array_equal(blurred.velocities, exact.velocities)
+
+
+def test_time_is_a_whole_number_of_steps(robot: Robot) -> None:
+    with Simulation(robot, SimulationConfig(time_step=0.003)) as simulation:
+        for _ in range(100):
+            simulation.step(7)
+        assert simulation.time == 700 * 0.003
+        assert simulation.observe().time == simulation.time
+
+
+def test_joints_go_to_the_command_and_no_faster_than_their_limit(
+    simulation: Simulation,
+) -> None:
+    robot = simulation.robot
+    posture = np.zeros(robot.n_joints)
+    posture[robot.yaw_indices] = np.linspace(-0.6, 0.6, robot.n_yaw)
+    simulation.command(posture)
+    simulation.step(10)
+    reached = np.abs(simulation.observe().positions).max()
+    assert reached <= robot.velocity_limit * 10 * simulation.config.time_step + 1e-3
+    simulation.step(290)
+    np.testing.assert_allclose(simulation.observe().positions, posture, atol=0.01)
+
+
+def test_command_is_spread_over_the_steps_to_the_next(simulation: Simulation) -> None:
+    """A servo interpolates: ten steps for 0.05 rad are ten small ones, not one and a wait."""
+    posture = np.zeros(simulation.robot.n_joints)
+    posture[8] = 0.05
+    simulation.command(posture)
+    simulation.step(10)
+    peak = simulation.observe().velocities[8]
+    assert peak == pytest.approx(0.05 / (10 * simulation.config.time_step), rel=0.1)
+
+
+def test_command_beyond_the_position_limit_is_clipped(simulation: Simulation) -> None:
+    robot = simulation.robot
+    posture = np.zeros(robot.n_joints)
+    posture[0], posture[14] = 50.0, -50.0
+    simulation.command(posture)
+    simulation.step(400)
+    positions = simulation.observe().positions
+    assert positions[0] == pytest.approx(robot.position_limit, abs=0.01)
+    assert positions[14] == pytest.approx(-robot.position_limit, abs=0.01)
+
+
+def test_held_posture_is_the_one_the_robot_has(simulation: Simulation) -> None:
+    simulation.command(np.full(simulation.robot.n_joints, 0.0))
+    posture = np.zeros(simulation.robot.n_joints)
+    posture[6] = 1.0
+    simulation.command(posture)
+    simulation.step(40)
+    simulation.hold_posture()
+    at = simulation.observe().positions[6]
+    assert 0.1 < at < 0.9
+    simulation.step(100)
+    assert simulation.observe().positions[6] == pytest.approx(at, abs=0.05)
+
+
+@pytest.mark.parametrize('bad', [math.nan, math.inf, -math.inf])
+def test_command_that_is_not_finite_is_refused_and_changes_nothing(
+    simulation: Simulation, bad: float
+) -> None:
+    posture = np.zeros(simulation.robot.n_joints)
+    posture[3] = bad
+    with pytest.raises(BadInputError, match=r'^positions: '):
+        simulation.command(posture)
+    simulation.step(20)
+    assert np.abs(simulation.observe().positions).max() < 1e-3
+
+
+@pytest.mark.parametrize('shape', [(), (15,), (17,), (16, 1)])
+def test_command_of_another_shape_is_refused(
+    simulation: Simulation, shape: tuple[int, ...]
+) -> None:
+    with pytest.raises(BadInputError, match=r'^positions: .*shape \(16,\)'):
+        simulation.command(np.zeros(shape))
+
+
+@pytest.mark.parametrize('direction', [1.0, -1.0])
+def test_heading_is_continuous_over_many_turns(simulation: Simulation, direction: float) -> None:
+    for k in range(1, 60):
+        heading = direction * 0.25 * k
+        pybullet.resetBasePositionAndOrientation(
+            simulation.body,
+            (0.0, 0.0, 1.0),
+            pybullet.getQuaternionFromEuler((0.0, 0.0, heading)),
+            physicsClientId=simulation.client,
+        )
+        assert simulation.observe().pose[2] == pytest.approx(heading, abs=1e-6)
+
+
+def test_pose_is_the_mean_body_frame(simulation: Simulation) -> None:
+    """Origin at the centre of mass; axis at the mean angle of the bodies, whatever the shape."""
+    robot = simulation.robot
+    for k in range(30):
+        seen = wriggle(simulation, k)
+    centres = body_centres(simulation)
+    mean = robot.body_masses @ centres / robot.body_masses.sum()
+    np.testing.assert_allclose(seen.pose[:2], mean[:2], atol=1e-9)
+    frames = [
+        pybullet.getBasePositionAndOrientation(simulation.body, physicsClientId=simulation.client)[
+            1
+        ]
+    ] + [
+        pybullet.getLinkState(simulation.body, j, physicsClientId=simulation.client)[1]
+        for j in range(robot.n_joints)
+    ]
+    yaw = np.array([pybullet.getEulerFromQuaternion(q)[2] for q in frames])
+    # pitch joints give way a little under the weight, so the yaw of a body is not quite planar
+    assert seen.pose[2] == pytest.approx(yaw @ robot.body_lengths / robot.length, abs=1e-3)
+
+
+def test_twist_is_the_rate_of_the_pose_in_its_own_axes(simulation: Simulation) -> None:
+    for k in range(30):
+        wriggle(simulation, k)
+    time_step = simulation.config.time_step
+    before = simulation.observe()
+    simulation.step()
+    after = simulation.observe()
+    rate = (after.pose - before.pose) / time_step
+    c, s = math.cos(before.pose[2]), math.sin(before.pose[2])
+    own = [c * rate[0] + s * rate[1], c * rate[1] - s * rate[0], rate[2]]
+    # semi-implicit steps: positions move with the velocity after the step
+    np.testing.assert_allclose(after.twist, own, atol=0.02 * np.abs(own).max())
+
+
+def open_clients() -> list[int]:
+    return [
+        client
+        for client in range(20)
+        if pybullet.getConnectionInfo(physicsClientId=client)['isConnected']
+    ]
+
+
+def test_unknown_terrain_is_refused_by_name_and_leaves_no_client_open(robot: Robot) -> None:
+    before = open_clients()
+    with pytest.raises(BadInputError, match=r"^terrain: got 'lava', expected .*'flat'"):
+        Simulation(robot, SimulationConfig(terrain='lava'))
+    assert open_clients() == before
+    assert 'flat' in TERRAINS
+
+
+def test_closed_simulation_refuses_to_go_on_and_may_be_closed_again(robot: Robot) -> None:
+    before = open_clients()
+    with Simulation(robot) as simulation:
+        assert len(open_clients()) == len(before) + 1
+    assert open_clients() == before
+    simulation.close()
+    for verb in (simulation.step, simulation.observe, simulation.reset, simulation.hold_posture):
+        with pytest.raises(SimulationError, match='closed'):
+            verb()
+
+
+def test_scene_that_explodes_is_reported(simulation: Simulation) -> None:
+    pybullet.resetBaseVelocity(
+        simulation.body, (math.nan, 0.0, 0.0), physicsClientId=simulation.client
+    )
+    with pytest.raises(SimulationError, match='not finite'):
+        for _ in range(5):
+            simulation.step()
+            simulation.observe()
+
+
+@pytest.mark.parametrize(
+    ('field', 'value'),
+    [
+        ('time_step', 0.0),
+        ('time_step', math.nan),
+        ('solver_iterations', 0),
+        ('friction', -0.1),
+        ('friction', math.inf),
+        ('contact_stiffness', 0.0),
+        ('contact_damping', -1.0),
+        ('effort_limit', -1.0),
+        ('velocity_limit', math.nan),
+        ('position_noise', -0.1),
+        ('effort_noise', math.inf),
+    ],
+)
+def test_setting_the_engine_would_swallow_is_refused_by_name(field: str, value: float) -> None:
+    with pytest.raises(BadInputError, match=rf'^{field}: '):
+        SimulationConfig(**{field: value})

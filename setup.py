@@ -46,7 +46,13 @@ setup(
     extras_require={
         'ros': ['ros-jazzy-rclpy[fastrtps]', 'ros-jazzy-common-interfaces'],
         'sim': ['pybullet>=3.2.5'],
-        'lab': ['matplotlib>=3.7', 'pillow>=9', 'tqdm>=4.60', 'mcap>=1.0', 'mcap-ros2-support>=0.5'],
+        'lab': [
+            'matplotlib>=3.7',
+            'pillow>=9',
+            'tqdm>=4.60',
+            'mcap>=1.0',
+            'mcap-ros2-support>=0.5',
+        ],
         'test': [
             'hypothesis>=6',
             'mypy>=1.8',

@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import sys
 
-import omega_turn_lab.ros_environment  # noqa: F401  (first: it may restart the interpreter)
 import rclpy
 from rclpy.executors import ExternalShutdownException
 from sensor_msgs.msg import JointState
+
+import omega_turn_lab.ros_environment  # noqa: F401  (first: it may restart the interpreter)
 
 JOINTS = [f'joint_{i}' for i in range(1, 17)]
 

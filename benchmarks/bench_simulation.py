@@ -1,4 +1,4 @@
-"""Cost of one bridge step beside bare stepSimulation of the same scene, and the real-time factor."""
+"""One bridge step beside bare stepSimulation of the same scene, and the real-time factor."""
 
 from __future__ import annotations
 

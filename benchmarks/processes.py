@@ -9,8 +9,9 @@ import time
 from pathlib import Path
 from types import TracebackType
 
-import omega_turn_lab.ros_environment  # noqa: F401  (first: it may restart the interpreter)
 import psutil
+
+import omega_turn_lab.ros_environment  # noqa: F401  (first: it may restart the interpreter)
 
 BIN = Path(sys.executable).parent
 

@@ -2,7 +2,6 @@
 
 import os
 
-from launch import LaunchDescription
 from launch.actions import (
     DeclareLaunchArgument,
     ExecuteProcess,
@@ -18,6 +17,8 @@ from launch.substitutions import (
 )
 from launch_ros.actions import Node, SetRemap
 from launch_ros.substitutions import FindPackageShare
+
+from launch import LaunchDescription
 
 PACKAGE = 'omega_turn_ros'
 OWN_DOMAIN = '73'

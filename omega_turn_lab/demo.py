@@ -10,7 +10,6 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-import omega_turn_lab.ros_environment  # noqa: F401  (first: it may restart the interpreter)
 from diagnostic_msgs.msg import DiagnosticArray
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
@@ -19,6 +18,7 @@ from std_msgs.msg import Float64
 from std_srvs.srv import Trigger
 from tqdm import tqdm
 
+import omega_turn_lab.ros_environment  # noqa: F401  (first: it may restart the interpreter)
 from omega_turn_lab.live import NodeError, Observer, Stack, wait_until
 from omega_turn_lab.pictures import animate_turn, draw_turn
 from omega_turn_lab.recording import BagRecorder

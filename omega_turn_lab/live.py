@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import threading
 import time
@@ -91,10 +92,8 @@ class Stack:
         self.context.try_shutdown()
 
     def _spin(self) -> None:
-        try:
+        with contextlib.suppress(ExternalShutdownException):
             self._executor.spin()
-        except ExternalShutdownException:
-            pass
 
 
 class Observer(Node):
@@ -149,7 +148,7 @@ class Observer(Node):
         Raises:
             NodeError: no odom or no joint states were seen.
         """
-        odom = dict((row[0], row[1:]) for row in self._odom)
+        odom = {row[0]: row[1:] for row in self._odom}
         first = self._odom[0][0] if self._odom else 0
         stamps = [
             stamp

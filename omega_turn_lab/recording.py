@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 import struct
 import sys
 import threading
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Any
 
 from mcap.well_known import MessageEncoding, Profile, SchemaEncoding
 from mcap.writer import Writer
-
 from rclpy.exceptions import InvalidHandle
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
@@ -22,7 +22,6 @@ from rclpy.qos import QoSProfile
 from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.nodes.health import steady_clock
 from omega_turn_ros.nodes.inbox import Inbox
-
 
 LOOK_EVERY = 0.1  # [s]
 QUEUE = 1000  # messages a topic may pile up between two looks
@@ -35,9 +34,9 @@ class BagRecorder:
     """Writes topics, byte for byte as they arrive, to one MCAP file.
 
     Messages keep their CDR encoding and are never decoded; the schemas are the .msg definitions
-    themselves, so Foxglove and PlotJuggler need nothing else. Log and publish time are the stamp of
-    a stamped message, else of the stamped one before it. Topics are looked at ten times a second, so recording
-    does not slow down the run it watches.
+    themselves, so Foxglove and PlotJuggler need nothing else. Log and publish time are the stamp
+    of a stamped message, else of the stamped one before it. Topics are looked at ten times a
+    second, so recording does not slow down the run it watches.
 
     Args:
         node: whose executor and clock are used; it stays the caller's.
@@ -106,10 +105,8 @@ class BagRecorder:
         with self._lock:
             if not self._open:
                 return
-        try:
+        with contextlib.suppress(InvalidHandle):  # the node went first: keep what was written
             self._drain()
-        except InvalidHandle:
-            pass  # the node went first; what was written stays whole
         with self._lock:
             self._open = False
             try:

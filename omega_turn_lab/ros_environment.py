@@ -1,9 +1,9 @@
-"""Importing this makes ROS 2 ready on this machine only; import it before anything that uses rclpy.
+"""Importing this makes ROS 2 ready on this machine. It goes before all that uses rclpy.
 
 - Discovery stays on this machine unless ROS_AUTOMATIC_DISCOVERY_RANGE says otherwise.
 - AMENT_PREFIX_PATH, which pip's wheels leave unset, points to the Python prefix.
-- rclpy from pip's wheels restarts the interpreter once to set its library path. Importing it here,
-  first, means that nothing has been done twice. pytest loads this module with `-p` for that reason.
+- rclpy from pip's wheels restarts the interpreter once to set its library path. Importing it
+  here, first, means that nothing is done twice. pytest loads this module with `-p` therefore.
 """
 
 from __future__ import annotations

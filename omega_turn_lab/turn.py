@@ -11,7 +11,6 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-import omega_turn_lab.ros_environment  # noqa: F401  (first: it may restart the interpreter)
 import rclpy
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
@@ -20,6 +19,7 @@ from rclpy.signals import SignalHandlerOptions
 from std_msgs.msg import Float64
 from tqdm import tqdm
 
+import omega_turn_lab.ros_environment  # noqa: F401  (first: it may restart the interpreter)
 from omega_turn_lab.live import NodeError
 from omega_turn_ros.nodes.qos import LATCHED, REQUEST
 from omega_turn_ros.nodes.runner import ENDINGS

@@ -122,7 +122,9 @@ def robot_from_mapping(data: dict[str, Any]) -> Robot:
     known = {'name', 'joints', 'effort_sign', *numbers}
     unknown = sorted(set(data) - known)
     if unknown:
-        raise BadInputError(f'robot field {unknown[0]}', data[unknown[0]], f'one of {sorted(known)}')
+        raise BadInputError(
+            f'robot field {unknown[0]}', data[unknown[0]], f'one of {sorted(known)}'
+        )
     names, axes = _check_joints(data.get('joints'))
     values = {key: _check_positive(key, data.get(key)) for key in numbers}
     if values['position_limit'] > math.pi:

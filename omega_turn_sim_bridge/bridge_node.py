@@ -37,16 +37,22 @@ BRIDGE_PARAMETERS = (
         'Robot: a name in config/robots or a path to a .yaml file.',
         read_only=True,
     ),
+    Spec('terrain', 'flat', 'Ground the robot lies on.', choices=tuple(TERRAINS), read_only=True),
     Spec(
-        'terrain', 'flat', 'Ground the robot lies on.', choices=tuple(TERRAINS), read_only=True
+        'real_time_factor', 1.0, 'Simulated over real time; 0 is as fast as it can.', '', 0, 1000
     ),
-    Spec('real_time_factor', 1.0, 'Simulated over real time; 0 is as fast as it can.', '', 0, 1000),
-    Spec('rate', 100.0, 'Sensor readings per simulated second.', 'Hz', 1.0, 1000.0, read_only=True),
-    Spec('physics_rate', 200.0, 'Solver steps per simulated second.', 'Hz', 50, 5000, read_only=True),
+    Spec(
+        'rate', 100.0, 'Sensor readings per simulated second.', 'Hz', 1.0, 1000.0, read_only=True
+    ),
+    Spec(
+        'physics_rate', 200.0, 'Solver steps per simulated second.', 'Hz', 50, 5000, read_only=True
+    ),
     Spec('solver_iterations', 20, 'Of the constraint solver.', '', 1, 1000, read_only=True),
     Spec('gui', False, "Show PyBullet's window.", read_only=True),
     Spec('friction', 0.5, 'Friction coefficient of the ground.', '', 0.0, 5.0, read_only=True),
-    Spec('effort_limit', 0.0, "Largest motor torque; 0: robot's.", 'N m', 0.0, 1e3, read_only=True),
+    Spec(
+        'effort_limit', 0.0, "Largest motor torque; 0: robot's.", 'N m', 0.0, 1e3, read_only=True
+    ),
     Spec(
         'velocity_limit', 0.0, "Largest motor speed; 0: robot's.", 'rad/s', 0.0, 50, read_only=True
     ),
@@ -64,7 +70,9 @@ BRIDGE_PARAMETERS = (
         'Step only when the command for the last reading has come: reproducible runs.',
         read_only=True,
     ),
-    Spec('lock_step_timeout', 2.0, 'Without a command, lock step goes on after this.', 's', 0.1, 60),
+    Spec(
+        'lock_step_timeout', 2.0, 'Without a command, lock step goes on after this.', 's', 0.1, 60
+    ),
 )
 
 

@@ -14,7 +14,7 @@ STANCE = 0.005  # [m] feet alternate left and right of the axis by this, or the 
 # [kg m^2] per body, all axes: what geared motors reflect. Bullet solves friction per world axis,
 # so a foot's force leaves the direction of its slip where the body yields unevenly (46 deg off for
 # bare boxes, an offset turn 9 % short); inertia far above the box's own evens that out.
-REFLECTED_INERTIA = 0.02
+REFLECTED_INERTIA = 0.01
 
 
 def ride_height(robot: Robot) -> float:
@@ -32,7 +32,11 @@ def urdf_from_robot(robot: Robot) -> str:
         URDF text. Link `head`, then `module_1`.. named after the joint in front of each.
     """
     root = ET.Element('robot', name=robot.name)
-    for name, rgba in (('head', '0.85 0.33 0.1 1'), ('even', '0.2 0.3 0.4 1'), ('odd', '0.3 0.45 0.55 1')):
+    for name, rgba in (
+        ('head', '0.85 0.33 0.1 1'),
+        ('even', '0.2 0.3 0.4 1'),
+        ('odd', '0.3 0.45 0.55 1'),
+    ):
         ET.SubElement(ET.SubElement(root, 'material', name=name), 'color', rgba=rgba)
     _add_body(root, robot, 'head', robot.head_length, 0.5 * robot.head_length, 'head', 0)
     parent, joint_x = 'head', 0.0
@@ -90,7 +94,7 @@ def _add_body(
     for k in range(segments):
         # Neighbouring modules put the front foot on opposite sides, so no turn is favoured.
         handed = 1.0 if (first_segment + k) % 2 == 0 else -1.0
-        middle = centre + 0.5 * length - (k + 0.5) * span
+        middle = centre - 0.5 * length + (k + 0.5) * span
         for end, side in ((1.0, handed), (-1.0, -handed)):
             collision = ET.SubElement(link, 'collision')
             x, y = middle + end * GAUSS * span, side * STANCE

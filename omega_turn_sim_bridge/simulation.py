@@ -165,9 +165,7 @@ class Simulation:
         pybullet.resetBasePositionAndOrientation(
             self._body, self._base_frame(position), (0, 0, 0, 1), physicsClientId=self._client
         )
-        pybullet.resetBaseVelocity(
-            self._body, (0, 0, 0), (0, 0, 0), physicsClientId=self._client
-        )
+        pybullet.resetBaseVelocity(self._body, (0, 0, 0), (0, 0, 0), physicsClientId=self._client)
         for joint in self._joints:
             pybullet.resetJointState(self._body, joint, 0.0, 0.0, physicsClientId=self._client)
         self._reference = np.zeros(self.robot.n_joints)
@@ -229,7 +227,9 @@ class Simulation:
         """
         self._check_open()
         states = pybullet.getJointStates(self._body, self._joints, physicsClientId=self._client)
-        table = np.array([(s[JOINT_POSITION], s[JOINT_VELOCITY], s[JOINT_MOTOR_TORQUE]) for s in states])
+        table = np.array(
+            [(s[JOINT_POSITION], s[JOINT_VELOCITY], s[JOINT_MOTOR_TORQUE]) for s in states]
+        )
         positions, velocities, efforts = table.T
         if self._just_reset:
             efforts = np.zeros_like(efforts)  # PyBullet still tells those of the last step
@@ -237,7 +237,9 @@ class Simulation:
         if not (np.isfinite(table).all() and np.isfinite(pose).all()):
             raise SimulationError(f'not finite at t = {self.time:.3f} s: the scene has exploded')
         if self.config.position_noise:
-            positions = positions + self._rng.normal(0.0, self.config.position_noise, positions.shape)
+            positions = positions + self._rng.normal(
+                0.0, self.config.position_noise, positions.shape
+            )
         if self.config.effort_noise:
             efforts = efforts + self._rng.normal(0.0, self.config.effort_noise, efforts.shape)
         return Observation(self.time, positions, velocities, efforts, pose, twist)

@@ -10,7 +10,7 @@ from omega_turn_ros.errors import BadInputError
 
 
 def _flat(client: int, seed: int) -> list[int]:
-    """Level ground, friction 1 so that the feet's coefficient is the pair's (PyBullet multiplies)."""
+    """Level ground. PyBullet multiplies coefficients, so 1 here leaves the feet's own."""
     shape = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=client)
     ground = pybullet.createMultiBody(0.0, shape, physicsClientId=client)
     pybullet.changeDynamics(ground, -1, lateralFriction=1.0, physicsClientId=client)

@@ -67,7 +67,7 @@ class AdmittanceState:
 def wave_jacobian(
     phase_forward: float, phase_turning: float, k_forward: float, k_turning: float, n_joints: int
 ) -> Array:
-    """d theta / d(A_f, A_t), transposed: the J of eq:admittance.
+    """D theta / d(A_f, A_t), transposed: the J of eq:admittance.
 
     Returns:
         Row 0: sin(tau_f + 2 pi k_f i/N); row 1: the same of the turning wave; shape (2, N).

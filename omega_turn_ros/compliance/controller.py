@@ -1,4 +1,4 @@
-"""The compliance controller as one pure step: joint states and phases in, amplitude offsets out."""
+"""The compliance controller as one pure step: joint states in, amplitude offsets out."""
 
 from __future__ import annotations
 

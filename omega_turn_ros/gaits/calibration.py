@@ -134,4 +134,6 @@ def calibration_from_mapping(data: dict[str, Any]) -> Calibration:
     except (KeyError, TypeError, ValueError) as error:
         if isinstance(error, BadInputError):
             raise
-        raise BadInputError('calibration', type(error).__name__, f'complete tables ({error})') from error
+        raise BadInputError(
+            'calibration', type(error).__name__, f'complete tables ({error})'
+        ) from error

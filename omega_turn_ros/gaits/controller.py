@@ -294,9 +294,7 @@ class GaitController:
         heading_change = 0.0
         if np.abs(command[self._yaw]).max() > AT_REST:
             heading_change = self._unbend_heading(command[self._yaw])
-        move = move_between(
-            command, np.zeros_like(command), self._move_velocity(), heading_change
-        )
+        move = move_between(command, np.zeros_like(command), self._move_velocity(), heading_change)
         return replace(
             state, mode=Mode.MOVING, move=move, to_cycle=False, phase_rate=0.0, settling=0.0
         )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import enum
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,8 +35,8 @@ class ControllerConfig:
         phase_ramp_time: the gait phase reaches its full rate in this time [s].
         heading_feedback: use measured heading to re-plan after each cycle.
         heading_tolerance: with feedback, a turn ends within this of its goal [rad].
-        max_corrections: with feedback, a turn may take three times its planned cycles and this many
-            more before it is given up.
+        max_corrections: with feedback, a turn may take three times its planned cycles and this
+            many more before it is given up.
         offset_limit: largest amplitude offset accepted from compliance [rad].
         offset_rate: largest rate of the amplitude offsets [rad/s].
         catch_up_tolerance: after joint states were lost the robot must be this close to the
@@ -103,7 +103,7 @@ class ControllerState:
     mode: Mode = Mode.WAITING
     command: Array | None = None
     goal: float | None = None
-    heading: HeadingTracker = HeadingTracker()
+    heading: HeadingTracker = field(default_factory=HeadingTracker)
     move: Move | None = None
     to_cycle: bool = False
     scale: float = 0.0

@@ -57,7 +57,7 @@ def serpenoid(amplitude: ArrayLike, phase: ArrayLike, k: float, n: int) -> NDArr
 def offset_turn(
     amplitude: ArrayLike, phase: ArrayLike, offset: ArrayLike, k: float, n: int
 ) -> NDArray[np.float64]:
-    """Offset turn (eq:serpenoid, eq:offset): k_t = 0, so the turning wave is kappa, constant or not.
+    """Offset turn (eq:serpenoid, eq:offset): k_t = 0 makes the turning wave an offset kappa.
 
     Args:
         amplitude: A [rad], shape (...).
@@ -124,7 +124,7 @@ class TwoWaveGait:
                 raise BadInputError(f'gait field {field}', value, 'a finite number')
 
     def phases(self, phase: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return (tau_f, tau_t) [rad], each shape (...), at gait phase tau_t [rad], shape (...)."""
+        """Return (tau_f, tau_t) [rad], each shape (...), at gait phase tau_t [rad], (...)."""
         tau_t = np.asarray(phase, float)
         return tau_t - self.psi, tau_t
 

@@ -114,9 +114,7 @@ def _dissipation(p: Array, v: Array, w: Array, xi: Array, epsilon: float) -> Arr
     return np.sqrt((slip**2).sum(axis=-1) + epsilon**2) @ w
 
 
-def _derivatives(
-    p: Array, v: Array, w: Array, xi: Array, epsilon: float
-) -> tuple[Array, Array]:
+def _derivatives(p: Array, v: Array, w: Array, xi: Array, epsilon: float) -> tuple[Array, Array]:
     """Gradient (B, 3) and Hessian (B, 3, 3) of the smoothed dissipation."""
     slip = _slip(p, v, xi)
     norm = np.sqrt((slip**2).sum(axis=-1) + epsilon**2)
@@ -142,9 +140,7 @@ def _derivatives(
     return gradient, hessian
 
 
-def _line_search(
-    p: Array, v: Array, w: Array, xi: Array, step: Array, epsilon: float
-) -> Array:
+def _line_search(p: Array, v: Array, w: Array, xi: Array, step: Array, epsilon: float) -> Array:
     """Halve each step until the dissipation does not grow."""
     before = _dissipation(p, v, w, xi, epsilon)
     factor = np.ones(xi.shape[0])
@@ -191,6 +187,8 @@ def _torques_of_slip(chain: PlanarChain, state: ShapeState, slip: Array, mu: flo
     moment = state.points[..., 0] * force[..., 1] - state.points[..., 1] * force[..., 0]
     about_origin = moment @ behind.T
     force_behind = np.einsum('np,bpx->bnx', behind, force)
-    shift = state.joints[..., 0] * force_behind[..., 1] - state.joints[..., 1] * force_behind[..., 0]
+    shift = (
+        state.joints[..., 0] * force_behind[..., 1] - state.joints[..., 1] * force_behind[..., 0]
+    )
     result: Array = -(about_origin - shift)
     return result

@@ -44,7 +44,9 @@ ADMITTANCE_PARAMETERS = (
     Spec('stiffness', [8.0, 8.0], 'K of (forward, turning) wave.', 'N m/rad', 1e-3, 1e8),
     Spec('offset_limit', 0.35, 'Largest amplitude offset.', 'rad', 1e-3, 1.5),
     Spec('rate_limit', 1.0, 'Largest rate of the offsets.', 'rad/s', 1e-3, 10.0),
-    Spec('relax_rate', 0.5, 'Offsets return to 0 at this rate without efforts.', 'rad/s', 0.01, 10),
+    Spec(
+        'relax_rate', 0.5, 'Offsets return to 0 at this rate without efforts.', 'rad/s', 0.01, 10
+    ),
     Spec('torque_scale', 1.0, 'Factor on J tau_ext; 0 switches yielding off.', '', -100.0, 100.0),
     Spec('effort_sign', 0, "+1/-1: effort > 0 drives to + / - angles; 0: robot's.", '', -1, 1),
     Spec('friction', 0.5, 'Friction of open ground; its torque is subtracted.', '', 0.0, 5.0),
@@ -100,9 +102,7 @@ class AdmittanceNode(Node):
 
     def __init__(self, context: Context | None = None, **options: Any) -> None:
         super().__init__('admittance_node', context=context, **options)
-        self._settings = NodeParameters(
-            self, ADMITTANCE_PARAMETERS, self._accept, self._apply
-        )
+        self._settings = NodeParameters(self, ADMITTANCE_PARAMETERS, self._accept, self._apply)
         self._robot = load_robot(self._settings['robot'])
         self._yaw = self._robot.yaw_indices
         self._health = Health(self)
@@ -111,7 +111,8 @@ class AdmittanceNode(Node):
         self._state = self._controller.initial_state()
         self._time = StepTimer(0.025, 0.01)
         self._relax_time = StepTimer(2.0 * WATCHDOG_PERIOD)
-        self._phases: JointState | None = None
+        self._phases: tuple[float, float] | None = None
+        self._phases_stamp, self._playing = -1, False
         self._answered = -1
         self._stamp = Time()
         lock_step = self._settings['lock_step']
@@ -141,12 +142,13 @@ class AdmittanceNode(Node):
             self._pending = message
         for message in self._wave_phases.drain():
             try:
-                self._wave_reader.read(message, 'position')
-                self._wave_reader.read(message, 'velocity')
+                forward, turning = self._wave_reader.read(message, 'position').tolist()
+                rates = self._wave_reader.read(message, 'velocity')
             except BadInputError as error:
                 self._health.refuse('wave_phases', str(error))
             else:
-                self._phases = message
+                self._phases, self._playing = (forward, turning), bool(rates.any())
+                self._phases_stamp = nanoseconds_of(message.header.stamp)
                 self._phases_seen.mark()
         if self._pending is not None and self._complete(self._pending):
             message, self._pending = self._pending, None
@@ -157,9 +159,7 @@ class AdmittanceNode(Node):
         if not self._lock_step or self._answered < 0 or self._phases is None:
             return True
         stamp = nanoseconds_of(message.header.stamp)
-        return stamp == self._answered or (
-            nanoseconds_of(self._phases.header.stamp) == self._answered
-        )
+        return self._answered in (stamp, self._phases_stamp)
 
     def _advance(self, message: JointState) -> None:
         stamp = nanoseconds_of(message.header.stamp)
@@ -177,9 +177,8 @@ class AdmittanceNode(Node):
         self._answered = stamp
         self._efforts_seen.mark()
         dt = self._time.step(stamp)
-        waves = self._phases if self._phases_seen.fresh else None
-        if waves is not None and waves.velocity[0] != 0.0:
-            phases = (waves.position[0], waves.position[1])
+        phases = self._phases if self._playing and self._phases_seen.fresh else None
+        if phases is not None:
             self._state = self._controller.step(self._state, angles, rates, efforts, phases, dt)
         else:
             self._state = self._controller.relax(self._state, dt)

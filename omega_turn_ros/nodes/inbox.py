@@ -70,9 +70,7 @@ class Inbox(Generic[Message]):
         subscription = self._subscription
         with subscription.handle:
             for _ in range(self._depth):
-                taken = subscription.handle.take_message(
-                    subscription.msg_type, subscription.raw
-                )
+                taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
                 if taken is None:
                     break
                 messages.append(taken[0])

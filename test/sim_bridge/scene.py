@@ -20,6 +20,17 @@ def body_centres(simulation: Simulation) -> np.ndarray:
     return np.array([head, *others])
 
 
+def body_yaws(simulation: Simulation) -> np.ndarray:
+    """Yaw angle of every body, head first [rad], shape (n_joints + 1,)."""
+    body, client = simulation.body, simulation.client
+    _, head = pybullet.getBasePositionAndOrientation(body, physicsClientId=client)
+    others = [
+        pybullet.getLinkState(body, joint, physicsClientId=client)[1]
+        for joint in range(simulation.robot.n_joints)
+    ]
+    return np.array([pybullet.getEulerFromQuaternion(q)[2] for q in (head, *others)])
+
+
 def joint_positions(simulation: Simulation) -> np.ndarray:
     """Where the joints are [m], shape (n_joints, 3)."""
     states = [

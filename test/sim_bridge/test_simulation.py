@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 import pybullet
 import pytest
-from scene import body_centres, normal_forces
+from scene import body_centres, body_yaws, normal_forces
 
 from omega_turn_ros.errors import BadInputError, SimulationError
 from omega_turn_ros.robot import Robot, load_robot
@@ -151,19 +151,22 @@ def test_joints_go_to_the_command_and_no_faster_than_their_limit(
     simulation.command(posture)
     simulation.step(10)
     reached = np.abs(simulation.observe().positions).max()
-    assert reached <= robot.velocity_limit * 10 * simulation.config.time_step + 1e-3
+    # The servo's reference keeps the limit; its joint swings over it by a degree as it starts.
+    allowed = robot.velocity_limit * 10 * simulation.config.time_step
+    assert 0.5 * allowed < reached < allowed + math.radians(1.0)
     simulation.step(290)
     np.testing.assert_allclose(simulation.observe().positions, posture, atol=0.01)
 
 
 def test_command_is_spread_over_the_steps_to_the_next(simulation: Simulation) -> None:
-    """A servo interpolates: ten steps for 0.05 rad are ten small ones, not one and a wait."""
+    """A servo interpolates: ten steps for 0.05 rad are ten small ones, not four and a wait."""
     posture = np.zeros(simulation.robot.n_joints)
     posture[8] = 0.05
     simulation.command(posture)
     simulation.step(10)
-    peak = simulation.observe().velocities[8]
-    assert peak == pytest.approx(0.05 / (10 * simulation.config.time_step), rel=0.1)
+    seen = simulation.observe()
+    assert seen.positions[8] == pytest.approx(0.05, abs=0.01)
+    assert seen.velocities[8] > 0.5 * 0.05 / (10 * simulation.config.time_step)
 
 
 def test_command_beyond_the_position_limit_is_clipped(simulation: Simulation) -> None:
@@ -224,24 +227,19 @@ def test_heading_is_continuous_over_many_turns(simulation: Simulation, direction
 
 
 def test_pose_is_the_mean_body_frame(simulation: Simulation) -> None:
-    """Origin at the centre of mass; axis at the mean angle of the bodies, whatever the shape."""
+    """Origin at the centre of mass, axis at the mean angle of the bodies, whatever the shape."""
     robot = simulation.robot
-    for k in range(30):
-        seen = wriggle(simulation, k)
-    centres = body_centres(simulation)
-    mean = robot.body_masses @ centres / robot.body_masses.sum()
+    posture = np.zeros(robot.n_joints)
+    posture[robot.yaw_indices] = [0.9, 0.6, -0.2, -0.7, 0.3, 0.8, 0.5, -0.4]
+    simulation.command(posture)
+    simulation.step(300)
+    seen = simulation.observe()
+    mean = robot.body_masses @ body_centres(simulation) / robot.body_masses.sum()
     np.testing.assert_allclose(seen.pose[:2], mean[:2], atol=1e-9)
-    frames = [
-        pybullet.getBasePositionAndOrientation(simulation.body, physicsClientId=simulation.client)[
-            1
-        ]
-    ] + [
-        pybullet.getLinkState(simulation.body, j, physicsClientId=simulation.client)[1]
-        for j in range(robot.n_joints)
-    ]
-    yaw = np.array([pybullet.getEulerFromQuaternion(q)[2] for q in frames])
-    # pitch joints give way a little under the weight, so the yaw of a body is not quite planar
-    assert seen.pose[2] == pytest.approx(yaw @ robot.body_lengths / robot.length, abs=1e-3)
+    yaw = body_yaws(simulation) @ robot.body_lengths / robot.length
+    assert abs(yaw) > 0.02
+    # bodies tilt by some 1e-4 rad on their feet, which their yaw angles see
+    assert seen.pose[2] == pytest.approx(yaw, abs=1e-3)
 
 
 def test_twist_is_the_rate_of_the_pose_in_its_own_axes(simulation: Simulation) -> None:

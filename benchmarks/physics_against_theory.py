@@ -1,0 +1,72 @@
+"""Angle per cycle of the starting gaits: PyBullet beside the quasi-static model, open loop."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from omega_turn_ros.design.calibrate import straightest_phase
+from omega_turn_ros.design.starting_gaits import STARTING_GAITS
+from omega_turn_ros.gaits.two_wave import TwoWaveGait
+from omega_turn_ros.mechanics.chain import PlanarChain
+from omega_turn_ros.mechanics.trajectory import heading_along
+from omega_turn_ros.robot import Robot, load_robot
+from omega_turn_sim_bridge.simulation import Simulation, SimulationConfig
+
+READING = 0.01  # [s]
+
+
+def quasi_static_deg(robot: Robot, gait: TwoWaveGait) -> float:
+    path = gait.angles(np.linspace(0.0, 2.0 * np.pi, 721), robot.n_yaw)
+    return math.degrees(heading_along(PlanarChain.of_robot(robot, 8), path)[-1])
+
+
+def physics_deg(robot: Robot, gait: TwoWaveGait, period: float, config: SimulationConfig) -> float:
+    """Bend to the start shape, play one cycle, wait; the heading change between equal shapes."""
+    start = straightest_phase(gait, robot.n_yaw)
+    steps = round(READING / config.time_step)
+    with Simulation(robot, config) as simulation:
+
+        def play(phase: float, scale: float) -> None:
+            posture = np.zeros(robot.n_joints)
+            posture[robot.yaw_indices] = gait.angles(phase, robot.n_yaw, scale)
+            simulation.command(posture)
+            simulation.step(steps)
+
+        for k in range(200):
+            play(start, min(1.0, k / 150))
+        before = simulation.observe().pose[2]
+        readings = round(period / READING)
+        for k in range(readings):
+            play(start + 2.0 * math.pi * (k + 1) / readings, 1.0)
+        for _ in range(100):
+            play(start, 1.0)
+        return math.degrees(simulation.observe().pose[2] - before)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('--robot', default='limbless16')
+    robot = load_robot(parser.parse_args().robot)
+    base = SimulationConfig()
+    cases = [('', 10.0, base)]
+    cases += [(f'mu {mu:g}', 10.0, replace(base, friction=mu)) for mu in (0.2, 0.8)]
+    cases += [(f'{period:g} s', period, base) for period in (5.0, 20.0)]
+    print('angle per cycle [deg]; PyBullet at mu 0.5 and 10 s unless said')
+    header = ['gait', 'theory', 'PyBullet', 'differs', *(name for name, _, _ in cases[1:])]
+    print(' '.join(f'{text:>10s}' for text in header))
+    for name, (_, _, gait) in STARTING_GAITS.items():
+        theory = quasi_static_deg(robot, gait)
+        sign = math.copysign(1.0, theory)
+        angles = [sign * physics_deg(robot, gait, period, cfg) for _, period, cfg in cases]
+        theory = abs(theory)
+        cells = [f'{theory:.1f}', f'{angles[0]:.1f}', f'{angles[0] / theory - 1:+.1%}']
+        cells += [f'{a:.1f}' for a in angles[1:]]
+        print(f'{name:>10s} ' + ' '.join(f'{cell:>10s}' for cell in cells), flush=True)
+
+
+if __name__ == '__main__':
+    main()

@@ -5,7 +5,6 @@ Renew them with `python -m omega_turn_lab.reference README.md`.
 
 from __future__ import annotations
 
-import re
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -39,9 +38,10 @@ def parameter_table(specs: Sequence[ParameterSpec]) -> str:
 def with_tables(readme: str) -> str:
     """Return the README with the table of each node renewed between its two markers."""
     for node, specs in NODES.items():
-        block = f'<!-- parameters {node} -->\n\n{parameter_table(specs)}\n\n<!-- end -->'
-        pattern = rf'<!-- parameters {node} -->.*?<!-- end -->'
-        readme = re.sub(pattern, lambda _, block=block: block, readme, flags=re.DOTALL)
+        start, end = f'<!-- parameters {node} -->', '<!-- end -->'
+        head, _, rest = readme.partition(start)
+        _, _, tail = rest.partition(end)
+        readme = f'{head}{start}\n\n{parameter_table(specs)}\n\n{end}{tail}'
     return readme
 
 

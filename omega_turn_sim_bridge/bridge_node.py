@@ -56,6 +56,7 @@ BRIDGE_PARAMETERS = (
     Spec(
         'velocity_limit', 0.0, "Largest motor speed; 0: robot's.", 'rad/s', 0.0, 50, read_only=True
     ),
+    Spec('servo_frequency', 5.0, 'Bandwidth of the motors.', 'Hz', 0.5, 100.0, read_only=True),
     Spec('position_noise', 0.0, 'Standard deviation of positions.', 'rad', 0.0, 1, read_only=True),
     Spec('effort_noise', 0.0, 'Standard deviation of efforts.', 'N m', 0.0, 1e3, read_only=True),
     Spec('seed', 0, 'Of the noise and of random terrains.', '', 0, 2**31 - 1, read_only=True),
@@ -84,6 +85,7 @@ def make_config(values: Mapping[str, Any]) -> SimulationConfig:
         friction=values['friction'],
         effort_limit=values['effort_limit'],
         velocity_limit=values['velocity_limit'],
+        servo_frequency=values['servo_frequency'],
         position_noise=values['position_noise'],
         effort_noise=values['effort_noise'],
         seed=values['seed'],

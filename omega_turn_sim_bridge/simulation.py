@@ -37,6 +37,7 @@ class SimulationConfig:
         contact_damping: of each foot [N s/m].
         effort_limit: largest motor torque [N m]; 0 takes the robot's own.
         velocity_limit: largest motor speed [rad/s]; 0 takes the robot's own.
+        servo_frequency: bandwidth of the motors' own position control [Hz].
         position_noise: standard deviation of the joint position readings [rad].
         effort_noise: standard deviation of the effort readings [N m].
         seed: of the noise and of random terrains.
@@ -51,6 +52,7 @@ class SimulationConfig:
     contact_damping: float = 100.0
     effort_limit: float = 0.0
     velocity_limit: float = 0.0
+    servo_frequency: float = 5.0
     position_noise: float = 0.0
     effort_noise: float = 0.0
     seed: int = 0
@@ -59,7 +61,7 @@ class SimulationConfig:
 
     def __post_init__(self) -> None:
         """Refuse settings the engine would accept silently."""
-        positive = ('time_step', 'solver_iterations', 'contact_stiffness')
+        positive = ('time_step', 'solver_iterations', 'contact_stiffness', 'servo_frequency')
         not_negative = (
             'friction',
             'contact_damping',
@@ -169,6 +171,7 @@ class Simulation:
         for joint in self._joints:
             pybullet.resetJointState(self._body, joint, 0.0, 0.0, physicsClientId=self._client)
         self._reference = np.zeros(self.robot.n_joints)
+        self._reference_rate = np.zeros(self.robot.n_joints)
         self._target = np.zeros(self.robot.n_joints)
         self._base_yaw = 0.0
         self._just_reset = True
@@ -198,17 +201,21 @@ class Simulation:
             SimulationError: the client has been closed.
         """
         self._check_open()
-        reach = self._velocity_limit * self.config.time_step
-        for left in range(count, 0, -1):
-            # Spread the way to the target over the steps of this call, as a servo interpolates.
-            move = np.clip((self._target - self._reference) / left, -reach, reach)
-            self._reference += move
+        dt, omega = self.config.time_step, 2.0 * math.pi * self.config.servo_frequency
+        for _ in range(count):
+            # Critically damped, implicit: a servo smooths late and bunched commands, which would
+            # otherwise jerk the body out of quasi-static motion.
+            pull = dt * omega * omega * (self._target - self._reference)
+            rate = (self._reference_rate + pull) / (1.0 + dt * omega) ** 2
+            rate = np.clip(rate, -self._velocity_limit, self._velocity_limit)
+            self._reference += dt * rate
+            self._reference_rate = rate
             pybullet.setJointMotorControlArray(
                 self._body,
                 self._joints,
                 pybullet.POSITION_CONTROL,
                 targetPositions=self._reference.tolist(),
-                targetVelocities=(move / self.config.time_step).tolist(),
+                targetVelocities=rate.tolist(),
                 forces=self._forces,
                 positionGains=self._position_gains,
                 velocityGains=self._velocity_gains,

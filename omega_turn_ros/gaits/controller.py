@@ -101,6 +101,7 @@ class GaitController:
             goal=goal,
             heading=state.heading.restarted(),
             ratio=state.ground_ratio,
+            cycle_start=state.cycle_start - state.heading.progress,
             cycles=0,
             budget=budget,
             shortfall=0.0,
@@ -108,7 +109,7 @@ class GaitController:
         if state.mode is Mode.WAITING:
             return state
         if state.mode is Mode.CYCLING and goal is not None and self._helps(state, goal):
-            return replace(state, cycle_start=-self._cycle_progress(state))
+            return state
         if state.mode is Mode.MOVING and not state.to_cycle:
             return state  # already on the way to rest, where the new turn is planned
         return self._move_to_rest(state)
@@ -305,10 +306,6 @@ class GaitController:
         rest = table.angle_of(state.scale) - table.heading_at(state.scale, state.turned)
         rest = rest * state.ratio - table.bend_heading_of(state.scale)
         return 0.0 <= rest / goal <= 1.0
-
-    def _cycle_progress(self, state: ControllerState) -> float:
-        table = self.gait.calibration
-        return table.heading_at(state.scale, state.turned) * state.ratio
 
     def _move_velocity(self) -> float:
         return min(self.config.move_velocity, 0.9 * self.limits.velocity)

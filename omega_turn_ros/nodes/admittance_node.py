@@ -135,10 +135,15 @@ class AdmittanceNode(Node):
         self._controller = make_compliance(values, self._robot)
         self._reader = JointReader(self._robot.joint_names, values['ignore_unknown_joints'])
         self._wave_reader = JointReader(WAVES)
-        self._efforts_seen.timeout = self._phases_seen.timeout = values['effort_timeout']
+        # In lock step stamps tell what belongs together; the wall clock has no say.
+        timeout = 0.0 if values['lock_step'] else values['effort_timeout']
+        self._efforts_seen.timeout = self._phases_seen.timeout = timeout
 
     def _on_joint_states(self) -> None:
         for message in self._joint_states.drain():
+            overtaken = self._pending is not None and message.header != self._pending.header
+            if overtaken:
+                self._phases = None  # the robot goes on without a gait node: wait for none
             self._pending = message
         for message in self._wave_phases.drain():
             try:
@@ -193,10 +198,7 @@ class AdmittanceNode(Node):
     def _on_watchdog(self) -> None:
         """While efforts are missing, bring the offsets home on the steady clock."""
         dt = self._relax_time.step(steady_clock().now().nanoseconds)
-        if self._pending is not None:
-            message, self._pending = self._pending, None
-            self._advance(message)
-        elif not self._efforts_seen.fresh and any(self._state.admittance.offset):
+        if not self._efforts_seen.fresh and any(self._state.admittance.offset):
             self._health.warn('stale', 'no efforts: amplitude offsets relax to 0')
             self._state = self._controller.relax(self._state, dt)
             self._publish(self.get_clock().now().to_msg())

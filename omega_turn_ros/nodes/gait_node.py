@@ -105,9 +105,13 @@ class GaitNode(Node):
         self._controller = make_controller(values, self._robot)
         self._joint_reader = JointReader(self._robot.joint_names, values['ignore_unknown_joints'])
         self._wave_reader = JointReader(WAVES)
-        self._states_seen.timeout = values['state_timeout']
-        self._odom_seen.timeout = values['odom_timeout']
-        self._amplitudes_seen.timeout = values['amplitude_timeout']
+        for seen, timeout in (
+            (self._states_seen, 'state_timeout'),
+            (self._odom_seen, 'odom_timeout'),
+            (self._amplitudes_seen, 'amplitude_timeout'),
+        ):
+            # In lock step stamps tell what belongs together; the wall clock has no say.
+            seen.timeout = 0.0 if values['lock_step'] else values[timeout]
 
     def _on_timer(self) -> None:
         now = self.get_clock().now()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -43,6 +44,28 @@ def test_open_loop_turn_takes_the_planned_cycles_and_the_ground_turns_the_body_b
     assert rig.state.remaining == 0.0
     assert (rig.posture == 0.0).all()
     assert rig.state.limited == 0
+
+
+@pytest.mark.parametrize('angle', [1.0, -2.5, 4.6])
+def test_bending_that_turns_the_body_is_reckoned_with(
+    make_rig: MakeRig, omega: LibraryGait, robot: Robot, angle: float
+) -> None:
+    """A robot whose body turns by 0.3 rad on the way into the cycle, and back on the way out."""
+    bend = 0.3
+    table = replace(omega.calibration, bend_heading=bend * omega.calibration.scales)
+    rig = make_rig(gait=replace(omega, calibration=table))
+    start = omega.gait.angles(table.start_phase, robot.n_yaw)
+    rig.controller = GaitController(
+        robot,
+        rig.controller.gait,
+        rig.controller.config,
+        rig.controller.limits,
+        lambda posture: -bend * float(posture @ start) / float(start @ start),
+    )
+    rig.ask(angle)
+    rig.finish()
+    assert rig.state.cycles == plan_turn(angle, table).cycles
+    assert abs(rig.state.shortfall) < 1e-4
 
 
 def test_every_shipped_gait_turns_by_the_angle_asked_for(
@@ -180,10 +203,24 @@ def test_newest_turn_wins_and_counts_from_the_heading_it_was_asked_at(
     since = len(rig.outputs) - 1
     rig.ask(second)
     assert rig.state.remaining == second
+    if when < 6.0:  # what is left of the cycle under way leads towards 5 rad and past the others
+        assert rig.state.mode is (Mode.CYCLING if second == 5.0 else Mode.MOVING)
     rig.finish()
     # Cycle left in the middle included: its unbending is integrated, not tabulated.
     cycles = rig.state.cycles + 1
     assert rig.balanced_heading(since) == pytest.approx(second, abs=cycles * PER_CYCLE)
+
+
+def test_cycle_under_way_is_judged_whole_when_a_newer_turn_takes_it_over(
+    make_rig: MakeRig,
+) -> None:
+    rig = make_rig(0.6, heading_feedback=True)
+    rig.ask(6.0)
+    rig.run_until(lambda state: state.mode is Mode.CYCLING and state.turned > 3.0)
+    rig.ask(5.0)
+    assert rig.state.mode is Mode.CYCLING
+    rig.run_until(lambda state: state.cycles == 1)
+    assert rig.state.ratio == pytest.approx(0.5 * (1.0 + 0.6), abs=1e-3)
 
 
 def test_turn_of_zero_ends_the_turn_at_once_and_goes_to_rest(make_rig: MakeRig) -> None:

@@ -62,11 +62,13 @@ class Graph:
         self._nodes.remove(node)
         node.destroy_node()
 
-    def spin_until(self, done: Callable[[], object], what: str) -> None:
-        """Run callbacks until `done`; fail the test when that takes too long."""
-        deadline = time.monotonic() + PATIENCE
+    def spin_until(
+        self, done: Callable[[], object], what: str, patience: float = PATIENCE
+    ) -> None:
+        """Run callbacks until `done`; fail the test when that takes longer than patience [s]."""
+        deadline = time.monotonic() + patience
         while not done():
-            assert time.monotonic() < deadline, f'waited {PATIENCE:g} s in vain for {what}'
+            assert time.monotonic() < deadline, f'waited {patience:g} s in vain for {what}'
             self.executor.spin_once(timeout_sec=0.05)
 
     def close(self) -> None:

@@ -169,7 +169,7 @@ def _play(stack: Stack, options: DemoOptions, commanded: float) -> Outcome:
         factor, end = turned / (time.monotonic() - start), turned + SETTLE
         wait_until(lambda: observer.simulated_time >= end, STALL_TIMEOUT, 'the robot to settle')
         _call(bridge, observer, 'pybullet_bridge/pause')
-        return Outcome(observer.record(end), gait.cycles_done, factor)
+        return Outcome(observer.record(SETTLE), gait.cycles_done, factor)
 
 
 def _command(observer: Observer, commanded: float, state_readers: int) -> None:

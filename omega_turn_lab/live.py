@@ -139,22 +139,19 @@ class Observer(Node):
         """Span of the odom stamps [s]."""
         return (self._odom[-1][0] - self._odom[0][0]) * 1e-9 if self._odom else 0.0
 
-    def record(self, until: float = math.inf) -> RunRecord:
+    def record(self, settle: float = math.inf) -> RunRecord:
         """What was seen, sampled at the odom stamps.
 
         Args:
-            until: leave out what came later than this after the first odom [s].
+            settle: leave out what came later than this after the last change of the command
+                [s]; a moment that is the same in every run, unlike the one of looking.
 
         Raises:
             NodeError: no odom or no joint states were seen.
         """
         odom = {row[0]: row[1:] for row in self._odom}
-        first = self._odom[0][0] if self._odom else 0
-        stamps = [
-            stamp
-            for stamp in sorted(odom)
-            if stamp in self._positions and (stamp - first) * 1e-9 <= until
-        ]
+        end = self._last_change() + settle * 1e9
+        stamps = [stamp for stamp in sorted(odom) if stamp in self._positions and stamp <= end]
         if len(stamps) < 2:
             raise NodeError('no odom and joint_states were seen')
         pose = np.array([odom[stamp] for stamp in stamps])
@@ -167,6 +164,14 @@ class Observer(Node):
         time_ = (np.array(stamps) - stamps[0]) * 1e-9
         remaining = self._remaining_at(stamps)
         return RunRecord(time_, pose, positions, np.array(commands), remaining)
+
+    def _last_change(self) -> int:
+        """Stamp of the last command that differs from the one before [ns]."""
+        stamps = sorted(self._commands)
+        for before, after in zip(stamps[-2::-1], stamps[::-1]):
+            if self._commands[before] != self._commands[after]:
+                return after
+        return 0
 
     def _remaining_at(self, stamps: list[int]) -> np.ndarray:
         log = self._remaining_log or [(0, 0.0)]

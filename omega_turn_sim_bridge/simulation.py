@@ -86,7 +86,8 @@ class Observation:
         positions: measured joint positions, head to tail [rad], shape (n_joints,).
         velocities: joint velocities [rad/s], shape (n_joints,).
         efforts: torque of each motor on the body behind its joint, + drives the joint towards
-            positive angles [N m], shape (n_joints,).
+            positive angles, mean over the steps since the last observation [N m], shape
+            (n_joints,).
         pose: mean body frame in the world: x [m], y [m], heading [rad, continuous], shape (3,).
         twist: its velocity in its own axes [m/s, m/s, rad/s], shape (3,).
     """
@@ -174,7 +175,9 @@ class Simulation:
         self._reference_rate = np.zeros(self.robot.n_joints)
         self._target = np.zeros(self.robot.n_joints)
         self._base_yaw = 0.0
-        self._just_reset = True
+        self._effort_sum = np.zeros(self.robot.n_joints)
+        self._effort_steps = 0
+        self._observed = False
         self._rng = np.random.default_rng(self.config.seed)
 
     def command(self, positions: ArrayLike) -> None:
@@ -201,6 +204,9 @@ class Simulation:
             SimulationError: the client has been closed.
         """
         self._check_open()
+        if self._observed:
+            self._effort_sum, self._effort_steps = np.zeros(self.robot.n_joints), 0
+            self._observed = False
         dt, omega = self.config.time_step, 2.0 * math.pi * self.config.servo_frequency
         for _ in range(count):
             # Critically damped, implicit: a servo smooths late and bunched commands, which would
@@ -223,7 +229,10 @@ class Simulation:
             )
             pybullet.stepSimulation(physicsClientId=self._client)
             self._steps += 1
-            self._just_reset = False
+            # Commands come in stairs, so torques ripple in step with them: a reading that looked
+            # at the last step only would be off by the same amount every time.
+            self._effort_sum += [s[JOINT_MOTOR_TORQUE] for s in self._joint_states()]
+            self._effort_steps += 1
 
     def observe(self) -> Observation:
         """Read joints and mean body frame.
@@ -233,15 +242,13 @@ class Simulation:
                 finite numbers.
         """
         self._check_open()
-        states = pybullet.getJointStates(self._body, self._joints, physicsClientId=self._client)
-        table = np.array(
-            [(s[JOINT_POSITION], s[JOINT_VELOCITY], s[JOINT_MOTOR_TORQUE]) for s in states]
-        )
-        positions, velocities, efforts = table.T
-        if self._just_reset:
-            efforts = np.zeros_like(efforts)  # PyBullet still tells those of the last step
+        states = self._joint_states()
+        table = np.array([(s[JOINT_POSITION], s[JOINT_VELOCITY]) for s in states])
+        positions, velocities = table.T
+        efforts = self._effort_sum / max(self._effort_steps, 1)
+        self._observed = True
         pose, twist = self._mean_body_frame(positions, velocities)
-        if not (np.isfinite(table).all() and np.isfinite(pose).all()):
+        if not all(np.isfinite(a).all() for a in (table, efforts, pose)):
             raise SimulationError(f'not finite at t = {self.time:.3f} s: the scene has exploded')
         if self.config.position_noise:
             positions = positions + self._rng.normal(
@@ -258,14 +265,19 @@ class Simulation:
             SimulationError: the client has been closed.
         """
         self._check_open()
-        states = pybullet.getJointStates(self._body, self._joints, physicsClientId=self._client)
-        self.command([s[JOINT_POSITION] for s in states])
+        self.command([s[JOINT_POSITION] for s in self._joint_states()])
 
     def close(self) -> None:
         """Disconnect the physics client; further calls do nothing."""
         if self._client >= 0:
             pybullet.disconnect(physicsClientId=self._client)
             self._client = -1
+
+    def _joint_states(self) -> list[tuple]:
+        states: list[tuple] = pybullet.getJointStates(
+            self._body, self._joints, physicsClientId=self._client
+        )
+        return states
 
     def _check_open(self) -> None:
         if self._client < 0:

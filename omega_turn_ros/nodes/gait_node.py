@@ -103,6 +103,10 @@ class GaitNode(Node):
 
     def _apply(self, values: Mapping[str, Any]) -> None:
         self._controller = make_controller(values, self._robot)
+        gait = self._controller.gait
+        if gait.robot != self._robot.name:
+            text = f'gait {gait.name} is calibrated for robot {gait.robot}, not this one'
+            self._health.warn('gait', f'{text}: predicted angles are off')
         self._joint_reader = JointReader(self._robot.joint_names, values['ignore_unknown_joints'])
         self._wave_reader = JointReader(WAVES)
         for seen, timeout in (
@@ -127,15 +131,24 @@ class GaitNode(Node):
             self._publish_output(self._last_stamp)
 
     def _on_lock_step(self) -> None:
-        """Step once every input of one instant has arrived."""
+        """Step once every input of one instant has arrived, or has gone stale."""
+        if self._answered < 0 and self._stamps['joint_states'] < 0:
+            self._odom_seen.mark()  # the first instant waits for them too
+            self._amplitudes_seen.mark()
         self._read_inputs()
         stamp = self._stamps['joint_states']
-        needed = ['odom'] if self._settings['heading_feedback'] == 'odom' else []
-        needed += ['wave_amplitudes'] if self._settings['use_compliance'] else []
-        if stamp == self._answered or any(self._stamps[name] != stamp for name in needed):
+        if stamp == self._answered or self._awaited(stamp):
             return
         self._answered = stamp
         self._advance(self._time.step(stamp), self._last_stamp)
+
+    def _awaited(self, stamp: int) -> bool:
+        """Whether odom or wave_amplitudes of this instant are still to come."""
+        odom = self._settings['heading_feedback'] == 'odom' and self._odom_seen.fresh
+        waves = self._settings['use_compliance'] and self._amplitudes_seen.fresh
+        return (odom and self._stamps['odom'] != stamp) or (
+            waves and self._stamps['wave_amplitudes'] != stamp
+        )
 
     def _read_requests(self) -> None:
         for message in self._turn_angle.drain():

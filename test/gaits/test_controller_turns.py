@@ -11,7 +11,7 @@ import pytest
 from rig import Rig
 
 from omega_turn_ros.errors import BadInputError
-from omega_turn_ros.gaits.controller import GATE_TIME, GaitController
+from omega_turn_ros.gaits.controller import GATE_TIME, SETTLE_TIME, GaitController
 from omega_turn_ros.gaits.controller_state import Inputs, Mode
 from omega_turn_ros.gaits.library import LibraryGait, load_gait
 from omega_turn_ros.gaits.turn_plan import plan_turn
@@ -46,11 +46,9 @@ def test_open_loop_turn_takes_the_planned_cycles_and_the_ground_turns_the_body_b
     assert rig.state.limited == 0
 
 
-@pytest.mark.parametrize('angle', [1.0, -2.5, 4.6])
-def test_bending_that_turns_the_body_is_reckoned_with(
-    make_rig: MakeRig, omega: LibraryGait, robot: Robot, angle: float
-) -> None:
-    """A robot whose body turns by 0.3 rad on the way into the cycle, and back on the way out."""
+@pytest.fixture
+def bending_rig(make_rig: MakeRig, omega: LibraryGait, robot: Robot) -> Rig:
+    """A body that turns by 0.3 rad on the way into the cycle, and back on the way out."""
     bend = 0.3
     table = replace(omega.calibration, bend_heading=bend * omega.calibration.scales)
     rig = make_rig(gait=replace(omega, calibration=table))
@@ -62,10 +60,31 @@ def test_bending_that_turns_the_body_is_reckoned_with(
         rig.controller.limits,
         lambda posture: -bend * float(posture @ start) / float(start @ start),
     )
-    rig.ask(angle)
-    rig.finish()
-    assert rig.state.cycles == plan_turn(angle, table).cycles
-    assert abs(rig.state.shortfall) < 1e-4
+    return rig
+
+
+@pytest.mark.parametrize('angle', [1.0, -2.5, 4.6])
+def test_bending_that_turns_the_body_is_reckoned_with(
+    bending_rig: Rig, omega: LibraryGait, angle: float
+) -> None:
+    bending_rig.ask(angle)
+    bending_rig.finish()
+    assert bending_rig.state.cycles == plan_turn(angle, omega.calibration).cycles
+    assert abs(bending_rig.state.shortfall) < 1e-4
+
+
+def test_bending_is_reckoned_with_between_cycles_of_different_size(
+    bending_rig: Rig, omega: LibraryGait
+) -> None:
+    bending_rig.ask(4.6)
+    bending_rig.run_until(lambda state: state.mode is Mode.CYCLING and state.turned > 3.0)
+    table, state = bending_rig.controller.gait.calibration, bending_rig.state
+    rest = table.angle_of(state.scale) - table.heading_at(state.scale, state.turned)
+    # rest of this cycle, unbent, and one and a half cycles more
+    bending_rig.ask(rest - table.bend_heading_of(state.scale) + 1.5 * table.largest_angle)
+    bending_rig.finish()
+    assert bending_rig.state.cycles == 3
+    assert abs(bending_rig.state.shortfall) < 1e-4
 
 
 def test_every_shipped_gait_turns_by_the_angle_asked_for(
@@ -102,6 +121,23 @@ def test_ratio_learned_on_a_large_turn_serves_the_next(make_rig: MakeRig) -> Non
     assert rig.state.cycles == 2
 
 
+def test_small_turn_teaches_nothing_about_large_ones(make_rig: MakeRig) -> None:
+    rig = make_rig(0.6, heading_feedback=True)
+    rig.ask(0.3)
+    rig.finish()
+    assert rig.state.ratio < 0.9
+    assert rig.state.ground_ratio == 1.0
+
+
+def test_heading_is_judged_once_the_robot_has_settled(make_rig: MakeRig) -> None:
+    rig = make_rig(heading_feedback=True)
+    rig.ask(0.5)
+    rig.finish()
+    straight = (rig.commands() == 0.0).all(axis=1)
+    at_rest = len(straight) - np.flatnonzero(~straight)[-1] - 1
+    assert at_rest * rig.dt >= SETTLE_TIME
+
+
 def test_without_feedback_the_measured_heading_is_ignored(make_rig: MakeRig) -> None:
     deaf, sound = make_rig(0.3), make_rig(1.0)
     for rig in (deaf, sound):
@@ -110,14 +146,16 @@ def test_without_feedback_the_measured_heading_is_ignored(make_rig: MakeRig) -> 
     np.testing.assert_array_equal(deaf.commands(), sound.commands())
 
 
-def test_turn_on_ground_that_does_not_turn_is_given_up_and_says_by_how_much(
-    make_rig: MakeRig,
+@pytest.mark.parametrize('ground', [0.0, -1.0])
+def test_turn_on_ground_that_does_not_obey_is_given_up_and_says_by_how_much(
+    make_rig: MakeRig, ground: float
 ) -> None:
-    rig = make_rig(0.0, heading_feedback=True, max_corrections=2)
+    rig = make_rig(ground, heading_feedback=True, max_corrections=2)
+    start = rig.heading
     rig.ask(1.0)
     rig.finish()
     assert rig.state.cycles == 3 * 1 + 2
-    assert rig.state.shortfall == pytest.approx(1.0)
+    assert rig.state.shortfall == pytest.approx(1.0 - (rig.heading - start))
     assert rig.state.remaining == 0.0
     assert (rig.posture == 0.0).all()
 

@@ -8,6 +8,9 @@ import pybullet
 from omega_turn_ros.gaits.library import LibraryGait
 from omega_turn_sim_bridge.simulation import Observation, Simulation
 
+PERIOD = 10.0  # [s] of a cycle, as in the paper
+READINGS_PER_SECOND = 50
+
 
 def body_centres(simulation: Simulation) -> np.ndarray:
     """Centre of mass of every body, head first [m], shape (n_joints + 1, 3)."""
@@ -91,12 +94,10 @@ def bend_into_cycle(simulation: Simulation, gait: LibraryGait) -> None:
     simulation.step(60)
 
 
-def play_cycle(
-    simulation: Simulation, gait: LibraryGait, part: float = 1.0, period: float = 10.0
-) -> list[Observation]:
-    """Play a part of one cycle at constant rate; observations 50 times per second."""
-    steps_per_reading = round(0.02 / simulation.config.time_step)
-    readings = round(period / 0.02)
+def play_cycle(simulation: Simulation, gait: LibraryGait, part: float = 1.0) -> list[Observation]:
+    """Play a part of one cycle at constant rate, an observation after each command."""
+    steps_per_reading = round(1.0 / (READINGS_PER_SECOND * simulation.config.time_step))
+    readings = round(PERIOD * READINGS_PER_SECOND)
     seen = []
     for k in range(1, round(part * readings) + 1):
         simulation.command(yaw_posture(simulation, gait, 2.0 * np.pi * k / readings))

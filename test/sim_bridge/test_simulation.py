@@ -158,15 +158,53 @@ def test_joints_go_to_the_command_and_no_faster_than_their_limit(
     np.testing.assert_allclose(simulation.observe().positions, posture, atol=0.01)
 
 
-def test_command_is_spread_over_the_steps_to_the_next(simulation: Simulation) -> None:
-    """A servo interpolates: ten steps for 0.05 rad are ten small ones, not four and a wait."""
+def test_servo_answers_a_step_of_its_command_smoothly(simulation: Simulation) -> None:
     posture = np.zeros(simulation.robot.n_joints)
     posture[8] = 0.05
     simulation.command(posture)
-    simulation.step(10)
-    seen = simulation.observe()
-    assert seen.positions[8] == pytest.approx(0.05, abs=0.01)
-    assert seen.velocities[8] > 0.5 * 0.05 / (10 * simulation.config.time_step)
+    path = [0.0]
+    for _ in range(80):
+        simulation.step()
+        path.append(simulation.observe().positions[8])
+    moves = np.diff(path)
+    # A critically damped servo peaks at omega step/e and never swings over.
+    peak = 2.0 * math.pi * simulation.config.servo_frequency * 0.05 / math.e
+    assert moves.max() < 1.2 * peak * simulation.config.time_step
+    assert moves.min() > -1e-4
+    assert path[-1] == pytest.approx(0.05, abs=5e-4)
+
+
+@pytest.mark.parametrize('frequency', [2.5, 10.0])
+def test_servo_follows_a_ramp_late_by_its_lag(robot: Robot, frequency: float) -> None:
+    rate = 0.5  # [rad/s]
+    with Simulation(robot, SimulationConfig(servo_frequency=frequency)) as simulation:
+        posture = np.zeros(robot.n_joints)
+        for _ in range(200):
+            posture[8] += rate * simulation.config.time_step
+            simulation.command(posture)
+            simulation.step()
+        late = (posture[8] - simulation.observe().positions[8]) / rate
+    # give or take the solver's step of 5 ms
+    assert late == pytest.approx(2.0 / (2.0 * math.pi * frequency), abs=0.006)
+
+
+def test_efforts_are_means_over_the_steps_since_the_last_observation(robot: Robot) -> None:
+    with Simulation(robot) as often, Simulation(robot) as seldom:
+        posture = np.zeros(robot.n_joints)
+        for k in range(10):
+            posture[robot.yaw_indices] = 0.02 * k
+            efforts = []
+            for simulation in (often, seldom):
+                simulation.command(posture)
+            for _ in range(4):
+                often.step()
+                efforts.append(often.observe().efforts)
+            seldom.step(3)
+            seldom.step()
+            seen = seldom.observe()
+            np.testing.assert_allclose(seen.efforts, np.mean(efforts, axis=0), atol=1e-12)
+            np.testing.assert_array_equal(seldom.observe().efforts, seen.efforts)
+        assert np.ptp(efforts, axis=0).max() > 0.01  # torques did change within a command
 
 
 def test_command_beyond_the_position_limit_is_clipped(simulation: Simulation) -> None:
@@ -234,7 +272,7 @@ def test_pose_is_the_mean_body_frame(simulation: Simulation) -> None:
     """Origin at the centre of mass, axis at the mean angle of the bodies, whatever the shape."""
     robot = simulation.robot
     posture = np.zeros(robot.n_joints)
-    posture[robot.yaw_indices] = [0.9, 0.6, -0.2, -0.7, 0.3, 0.8, 0.5, -0.4]
+    posture[robot.yaw_indices] = [1.2, 1.0, 0.8, 0.2, 0.0, 0.0, 0.1, -0.1]
     simulation.command(posture)
     simulation.step(300)
     seen = simulation.observe()
@@ -315,6 +353,8 @@ def test_scene_that_explodes_is_reported(simulation: Simulation) -> None:
         ('friction', -0.1),
         ('friction', math.inf),
         ('contact_stiffness', 0.0),
+        ('servo_frequency', 0.0),
+        ('servo_frequency', math.nan),
         ('contact_damping', -1.0),
         ('effort_limit', -1.0),
         ('velocity_limit', math.nan),

@@ -57,6 +57,7 @@ class GaitNode(Node):
         self._inputs = Inputs()
         self._heading: float | None = None
         self._answered = -1
+        self._absent: set[str] = set()
         self._last_stamp = Time()
         self._output: Output | None = None
         self._reported: float | None = None
@@ -131,24 +132,24 @@ class GaitNode(Node):
             self._publish_output(self._last_stamp)
 
     def _on_lock_step(self) -> None:
-        """Step once every input of one instant has arrived, or has gone stale."""
-        if self._answered < 0 and self._stamps['joint_states'] < 0:
-            self._odom_seen.mark()  # the first instant waits for them too
-            self._amplitudes_seen.mark()
+        """Step once every input of one instant has arrived."""
+        asked = self._stamps['joint_states']
+        missing = self._missing()
         self._read_inputs()
         stamp = self._stamps['joint_states']
-        if stamp == self._answered or self._awaited(stamp):
+        if asked not in (stamp, self._answered):
+            self._absent |= missing  # the robot went on unanswered: wait for these no more
+        if stamp == self._answered or self._missing() - self._absent:
             return
         self._answered = stamp
         self._advance(self._time.step(stamp), self._last_stamp)
 
-    def _awaited(self, stamp: int) -> bool:
-        """Whether odom or wave_amplitudes of this instant are still to come."""
-        odom = self._settings['heading_feedback'] == 'odom' and self._odom_seen.fresh
-        waves = self._settings['use_compliance'] and self._amplitudes_seen.fresh
-        return (odom and self._stamps['odom'] != stamp) or (
-            waves and self._stamps['wave_amplitudes'] != stamp
-        )
+    def _missing(self) -> set[str]:
+        """Inputs of the present instant that are still to come."""
+        needed = {'odom'} if self._settings['heading_feedback'] == 'odom' else set()
+        if self._settings['use_compliance']:
+            needed.add('wave_amplitudes')
+        return {n for n in needed if self._stamps[n] != self._stamps['joint_states']}
 
     def _read_requests(self) -> None:
         for message in self._turn_angle.drain():
@@ -178,6 +179,7 @@ class GaitNode(Node):
                 self._health.refuse('odom', str(error))
             else:
                 self._stamps['odom'] = nanoseconds_of(message.header.stamp)
+                self._absent.discard('odom')
                 self._odom_seen.mark()
         for message in self._amplitudes.drain():
             try:
@@ -188,9 +190,11 @@ class GaitNode(Node):
                 self._health.refuse('wave_amplitudes', str(error))
             else:
                 self._stamps['wave_amplitudes'] = nanoseconds_of(message.header.stamp)
+                self._absent.discard('wave_amplitudes')
                 self._amplitudes_seen.mark()
         self._heading = heading
-        compliant = self._settings['use_compliance'] and self._amplitudes_seen.fresh
+        heard = self._amplitudes_seen.fresh and 'wave_amplitudes' not in self._absent
+        compliant = self._settings['use_compliance'] and heard
         self._inputs = Inputs(
             positions,
             self._states_seen.fresh,

@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.gaits.controller import GaitController
 from omega_turn_ros.gaits.controller_state import ControllerConfig
 from omega_turn_ros.gaits.library import load_gait
@@ -77,7 +78,7 @@ def make_controller(values: Mapping[str, Any], robot: Robot) -> GaitController:
     """Build the controller the parameters describe.
 
     Raises:
-        BadInputError: the gait is unknown, or does not fit the robot, its limits or the period.
+        BadInputError: the gait is unknown, or does not fit the robot, its limits, period or rate.
     """
     limits = JointLimits(
         values['position_limit'] or robot.position_limit,
@@ -94,7 +95,10 @@ def make_controller(values: Mapping[str, Any], robot: Robot) -> GaitController:
         offset_limit=values['offset_limit'],
         offset_rate=values['offset_rate'],
     )
+    gait = load_gait(values['gait'])
+    slowest = 2.0 * math.pi * gait.calibration.peak_rate / values['period'] / values['rate']
+    if limits.step < slowest:
+        expected = f'at least {slowest:.3g} rad, the gait at {values["rate"]:g} Hz'
+        raise BadInputError('parameter step_limit', limits.step, expected)
     chain = PlanarChain.of_robot(robot)
-    return GaitController(
-        robot, load_gait(values['gait']), config, limits, lambda q: unbend_heading(chain, q)
-    )
+    return GaitController(robot, gait, config, limits, lambda q: unbend_heading(chain, q))

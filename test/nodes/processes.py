@@ -66,8 +66,12 @@ class Process:
         return self._process.wait(timeout=PATIENCE)
 
     def close(self) -> None:
-        """End it whatever it does."""
+        """End it, as gently as it lets itself be ended."""
         if self.lives:
-            self._process.kill()
-            self._process.wait()
+            self._process.terminate()
+            try:
+                self.wait()
+            except subprocess.TimeoutExpired:
+                self._process.kill()
+                self._process.wait()
         self._stderr.close()

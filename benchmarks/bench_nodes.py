@@ -105,13 +105,17 @@ def measure_latency(robot: FakeRobot) -> None:
         processes.node('admittance_node')
         processes.script(BARE, 'relay', 'joint_states', 'hop')
         processes.script(BARE, 'relay', 'hop', 'hops')
-        robot.turn.publish(Float64(data=100.0))
+        for topic in robot.counts:
+            robot.counts[topic] = 0
+        wanted = ('hops', 'wave_amplitudes', 'joint_commands')
         wait_for(
-            lambda: min(robot.counts[t] for t in ('hops', 'wave_amplitudes')) > 10,
+            lambda: min(robot.counts[t] for t in wanted) > 10,
             60,
             'all nodes',
             lambda: robot.run(0.1),
         )
+        robot.turn.publish(Float64(data=100.0))
+        robot.run(1.0)
         for arrivals in robot.arrivals.values():
             arrivals.clear()
         robot.run(SECONDS)

@@ -1,4 +1,4 @@
-"""Resident memory of the three nodes over a long turn: memory_soak.py [SIMULATED_SECONDS]."""
+"""Resident memory of the three nodes over one long turn: memory_soak.py [SECONDS [RATE]]."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from omega_turn_ros.nodes.time import nanoseconds_of
 
 DOMAIN = 86
 SECONDS = float(sys.argv[1]) if len(sys.argv) > 1 else 10_000.0
+RATE = float(sys.argv[2]) if len(sys.argv) > 2 else 100.0  # [Hz] of all topics
 REPORTS = 10
 
 
@@ -38,8 +39,10 @@ def main() -> None:
     )
     with Processes(DOMAIN) as processes:
         nodes = {
-            'bridge': processes.node('pybullet_bridge', real_time_factor=0.0),
-            'gait': processes.node('gait_node', use_sim_time=True, heading_feedback='odom'),
+            'bridge': processes.node('pybullet_bridge', real_time_factor=0.0, rate=RATE),
+            'gait': processes.node(
+                'gait_node', use_sim_time=True, heading_feedback='odom', rate=RATE
+            ),
             'admittance': processes.node('admittance_node', use_sim_time=True),
         }
         wait_for(lambda: clock[0] > 0 and turn.get_subscription_count() > 0, 60, 'nodes', look)

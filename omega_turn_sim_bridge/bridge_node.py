@@ -272,7 +272,7 @@ class PyBulletBridge(Node):
             'heading [rad]': float(self._observation.pose[2]),
             'largest effort [N m]': float(np.abs(self._observation.efforts).max()),
         }
-        self._health.publish(problems, facts)
+        self._health.publish(problems, facts, stamp_of(self._asked))
 
 
 def main(args: list[str] | None = None) -> int:

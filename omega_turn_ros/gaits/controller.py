@@ -264,10 +264,10 @@ class GaitController:
         if not self.config.heading_feedback or abs(predicted) < JUDGED_FROM:
             return state
         measured = state.heading.progress - state.cycle_start
-        ratio = 0.5 * (state.ratio + measured / predicted)
-        ratio = min(max(ratio, RATIO_RANGE[0]), RATIO_RANGE[1])
-        learned = ratio if abs(predicted) >= LEARNED_FROM else state.ground_ratio
-        return replace(state, ratio=ratio, ground_ratio=learned)
+        ratio = min(max(measured / predicted, RATIO_RANGE[0]), RATIO_RANGE[1])
+        if abs(predicted) < LEARNED_FROM:
+            return replace(state, ratio=ratio)
+        return replace(state, ratio=ratio, ground_ratio=0.5 * (state.ground_ratio + ratio))
 
     def _move_to_start(
         self, state: ControllerState, scale: float, bend_now: float

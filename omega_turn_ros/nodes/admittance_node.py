@@ -25,7 +25,7 @@ from omega_turn_ros.nodes.parameters import NodeParameters
 from omega_turn_ros.nodes.parameters import ParameterSpec as Spec
 from omega_turn_ros.nodes.qos import STATE, STATE_INPUT
 from omega_turn_ros.nodes.runner import run_node
-from omega_turn_ros.nodes.time import StepTimer, nanoseconds_of
+from omega_turn_ros.nodes.time import StepTimer, nanoseconds_of, stamp_of
 from omega_turn_ros.robot import Robot, load_robot
 
 WAVES = ('forward', 'turning')
@@ -215,7 +215,8 @@ class AdmittanceNode(Node):
             'waves playing': self._phases_seen.fresh,
             'clock jumps': self._time.jumps,
         }
-        self._health.publish(problems, facts)
+        answered = stamp_of(self._answered) if self._lock_step and self._answered >= 0 else None
+        self._health.publish(problems, facts, answered)
 
 
 def main(args: list[str] | None = None) -> int:

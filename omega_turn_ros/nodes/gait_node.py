@@ -268,7 +268,7 @@ class GaitNode(Node):
             'clock jumps': self._time.jumps,
             'amplitude offsets [rad]': state.offsets,
         }
-        self._health.publish(problems, facts)
+        self._health.publish(problems, facts, self._last_stamp if self._lock_step else None)
 
 
 def main(args: list[str] | None = None) -> int:

@@ -7,6 +7,7 @@ import time
 from collections import Counter
 from collections.abc import Mapping
 
+from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
@@ -79,12 +80,15 @@ class Health:
         """Dropped messages per topic."""
         return dict(self._refused)
 
-    def publish(self, problems: list[str], values: Mapping[str, object]) -> None:
+    def publish(
+        self, problems: list[str], values: Mapping[str, object], stamp: Time | None = None
+    ) -> None:
         """Publish one DiagnosticArray.
 
         Args:
             problems: what is wrong right now; empty means OK.
             values: facts, in order.
+            stamp: time of the facts; None for the node's clock.
         """
         status = DiagnosticStatus(name=self._node.get_fully_qualified_name())
         status.level = DiagnosticStatus.WARN if problems else DiagnosticStatus.OK
@@ -94,7 +98,7 @@ class Health:
         facts.update({f'refused {topic}': n for topic, n in self._refused.items()})
         status.values = [KeyValue(key=k, value=_text(v)) for k, v in facts.items()]
         message = DiagnosticArray(status=[status])
-        message.header.stamp = self._node.get_clock().now().to_msg()
+        message.header.stamp = stamp or self._node.get_clock().now().to_msg()
         self._publisher.publish(message)
 
 

@@ -13,7 +13,6 @@ import rclpy
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
-from rclpy.task import Future
 
 from omega_turn_ros.errors import OmegaTurnError
 
@@ -34,17 +33,23 @@ def run_node(make_node: Callable[[], Node], args: Sequence[str] | None = None) -
     Returns:
         Exit code for the shell.
     """
-    ended = _future_of_signal()
+    reader = _signal_socket()
+    ended = threading.Event()
     node: Node | None = None
     try:
         rclpy.init(
             args=None if args is None else list(args),
             signal_handler_options=SignalHandlerOptions.NO,
         )
-        node = make_node()
         executor = SingleThreadedExecutor()
+        threading.Thread(
+            target=_wait_for_signal, args=(reader, executor, ended), daemon=True
+        ).start()
+        node = make_node()
         executor.add_node(node)
-        executor.spin_until_future_complete(ended)
+        # Not spin_until_future_complete, which adds a callback to its future each round.
+        while not ended.is_set():
+            executor.spin_once()
     except ExternalShutdownException:
         pass
     except OmegaTurnError as error:
@@ -57,25 +62,29 @@ def run_node(make_node: Callable[[], Node], args: Sequence[str] | None = None) -
     return 0
 
 
-def _future_of_signal() -> Future:
-    """Future that is done after the first of ENDINGS."""
-    ended: Future = Future()
+def _signal_socket() -> socket.socket:
+    """Socket that receives the number of each of ENDINGS."""
     reader, writer = socket.socketpair()
     writer.setblocking(False)
-    # Python's own C handler writes each signal's number here, whichever thread it hits.
-    signal.set_wakeup_fd(writer.fileno())
+    # Python's own C handler writes there, whichever thread the signal hits.
+    signal.set_wakeup_fd(writer.detach())
     for number in ENDINGS:
         signal.signal(number, _do_nothing)
-
-    def wait() -> None:
-        with reader, writer:
-            reader.recv(1)
-            ended.set_result(True)
-            os._exit(128 + reader.recv(1)[0])
-
-    threading.Thread(target=wait, daemon=True).start()
-    return ended
+    return reader
 
 
 def _do_nothing(number: int, frame: object) -> None:
-    """Handler that lets the wake-up socket do the work."""
+    """Handler that lets the socket do the work."""
+
+
+def _wait_for_signal(
+    reader: socket.socket, executor: SingleThreadedExecutor, ended: threading.Event
+) -> None:
+    reader.recv(1)
+    ended.set()
+    executor.create_task(_nothing)  # wakes the executor
+    os._exit(128 + reader.recv(1)[0])
+
+
+def _nothing() -> None:
+    """Task that only makes `spin_once` return."""

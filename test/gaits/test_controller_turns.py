@@ -258,7 +258,7 @@ def test_cycle_under_way_is_judged_whole_when_a_newer_turn_takes_it_over(
     rig.ask(5.0)
     assert rig.state.mode is Mode.CYCLING
     rig.run_until(lambda state: state.cycles == 1)
-    assert rig.state.ratio == pytest.approx(0.5 * (1.0 + 0.6), abs=1e-3)
+    assert rig.state.ratio == pytest.approx(0.6, abs=1e-3)
 
 
 def test_turn_of_zero_ends_the_turn_at_once_and_goes_to_rest(make_rig: MakeRig) -> None:

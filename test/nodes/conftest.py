@@ -8,11 +8,11 @@ from collections.abc import Callable, Iterator
 from functools import partial
 
 import pytest
+from ros_graph import Graph
+from turner import Turner
 
 from omega_turn_ros.nodes import admittance_node, gait_node
 from omega_turn_sim_bridge import bridge_node
-from ros_graph import Graph
-from turner import Turner
 
 # Up to domain 101 DDS uses ports below Linux's ephemeral ones.
 DOMAINS = 101
@@ -32,9 +32,7 @@ def namespace(domain_id: int) -> str:
 
 
 @pytest.fixture
-def graph(
-    domain_id: int, namespace: str, monkeypatch: pytest.MonkeyPatch
-) -> Iterator[Graph]:
+def graph(domain_id: int, namespace: str, monkeypatch: pytest.MonkeyPatch) -> Iterator[Graph]:
     """A graph whose nodes report their health often, so that tests need not wait for it."""
     for module in (gait_node, admittance_node, bridge_node):
         monkeypatch.setattr(module, 'PUBLISH_EVERY', 0.05)

@@ -37,7 +37,7 @@ class Process:
         command = [executable(name), '--ros-args', '-r', f'__ns:={graph.namespace}']
         for key, value in parameters.items():
             command += ['-p', f'{key}:={value}']
-        self._stderr = tempfile.TemporaryFile()
+        self._stderr = tempfile.TemporaryFile()  # noqa: SIM115 (lives as long as the process)
         self._process = subprocess.Popen(
             command,
             env={**os.environ, 'ROS_DOMAIN_ID': str(graph.domain_id)},

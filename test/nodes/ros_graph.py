@@ -24,7 +24,6 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import Float64
 from std_srvs.srv import Trigger
 
-
 AnyNode = TypeVar('AnyNode', bound=Node)
 
 PATIENCE = 30.0  # [s] a test waits for something before it fails
@@ -139,7 +138,8 @@ class User:
     def set_parameter(self, node: str, name: str, value: Any) -> SetParametersResult:
         """Change a parameter as `ros2 param set` does."""
         client = self._parameter_client(node)
-        (result,) = self._answer(client.set_parameters([Parameter(name, value=value)]), node).results
+        answer = client.set_parameters([Parameter(name, value=value)])
+        (result,) = self._answer(answer, node).results
         return result
 
     def get_parameters(self, node: str, names: list[str]) -> list[Any]:
@@ -159,9 +159,7 @@ class User:
 
     def wait_for_fact(self, node: str, key: str, wanted: str) -> None:
         """Wait until the diagnostics of a node say `wanted` about `key`."""
-        self._graph.spin_until(
-            lambda: self.fact(node, key) == wanted, f'{node}: {key} = {wanted}'
-        )
+        self._graph.spin_until(lambda: self.fact(node, key) == wanted, f'{node}: {key} = {wanted}')
 
     def wait_for_problem(self, node: str, text: str) -> None:
         """Wait until the diagnostics of a node complain with these words."""

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from ros_graph import Graph, User
 from sensor_msgs.msg import JointState
+from turner import ROBOT, STEP, Turner
 
 from omega_turn_ros.nodes.admittance_node import AdmittanceNode
 from omega_turn_ros.nodes.gait_node import WAVES
 from omega_turn_ros.nodes.time import stamp_of
-from ros_graph import Graph, User
-from turner import ROBOT, STEP, Turner
 
 PUSHED = 0  # index of joint_1, the first yaw joint
 PUSH, DEAD_BAND, STIFFNESS, LIMIT = 1.7, 0.1, 8.0, 0.35  # [N m, N m, N m/rad, rad]
@@ -82,9 +82,7 @@ def pushed(compliant: Compliant, torque: float = PUSH) -> None:
 
 
 @pytest.mark.parametrize('sign', [1, -1])
-def test_a_push_moves_the_wave_it_acts_on_by_push_over_stiffness(
-    graph: Graph, sign: int
-) -> None:
+def test_a_push_moves_the_wave_it_acts_on_by_push_over_stiffness(graph: Graph, sign: int) -> None:
     compliant = Compliant(graph, effort_sign=sign)
     pushed(compliant, sign * PUSH)
     forward, turning = compliant.run(10.0)
@@ -228,9 +226,7 @@ def test_lost_efforts_let_the_offsets_fade_at_a_bounded_rate(graph: Graph) -> No
 
 
 @pytest.mark.parametrize('jump', [100.0, -0.5], ids=['forward', 'backward'])
-def test_stamps_that_jump_move_no_offset_further_than_one_step(
-    graph: Graph, jump: float
-) -> None:
+def test_stamps_that_jump_move_no_offset_further_than_one_step(graph: Graph, jump: float) -> None:
     compliant = Compliant(graph)
     pushed(compliant)
     before = np.array(compliant.run(1.0))

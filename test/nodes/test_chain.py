@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 from nav_msgs.msg import Odometry
 from rclpy.node import Node
+from ros_graph import Graph, User
 from sensor_msgs.msg import JointState
+from turner import ROBOT, CommandWatch
 
 from omega_turn_ros.gaits.limits import JointLimits
 from omega_turn_ros.nodes.admittance_node import AdmittanceNode
@@ -17,9 +19,6 @@ from omega_turn_ros.nodes.gait_node import GaitNode
 from omega_turn_ros.nodes.messages import heading_of
 from omega_turn_ros.nodes.time import nanoseconds_of
 from omega_turn_sim_bridge.bridge_node import PyBulletBridge
-from ros_graph import Graph, User
-from turner import ROBOT, CommandWatch
-
 
 RATE = {'rate': 50.0, 'lock_step': True}  # half the messages of the default rate
 BRIDGE = {**RATE, 'lock_step_timeout': 60.0, 'start_paused': True}
@@ -56,8 +55,10 @@ class Chain:
     def wait_until(self, seconds: float) -> None:
         """Wait for a reading of that simulated time [s]."""
         self.graph.spin_until(
-            lambda: self.states
-            and nanoseconds_of(self.states[-1].header.stamp) >= round(seconds * 1e9),
+            lambda: (
+                self.states
+                and nanoseconds_of(self.states[-1].header.stamp) >= round(seconds * 1e9)
+            ),
             f'{seconds} simulated seconds',
             PHYSICS_PATIENCE,
         )

@@ -11,9 +11,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from sensor_msgs.msg import JointState
-
 from ros_graph import Graph
+from sensor_msgs.msg import JointState
 from turner import ROBOT, Turner, silence
 
 MakeTurner = Callable[..., Turner]

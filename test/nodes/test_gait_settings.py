@@ -7,9 +7,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from ros_graph import Graph, User
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
 from trajectory_msgs.msg import JointTrajectory
+from turner import BRISK, ROBOT, STEP, Turner
 
 from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.nodes.admittance_node import ADMITTANCE_PARAMETERS, AdmittanceNode
@@ -18,8 +20,6 @@ from omega_turn_ros.nodes.gait_parameters import GAIT_PARAMETERS
 from omega_turn_ros.nodes.parameters import ParameterSpec
 from omega_turn_ros.nodes.time import nanoseconds_of
 from omega_turn_sim_bridge.bridge_node import BRIDGE_PARAMETERS, PyBulletBridge
-from ros_graph import Graph, User
-from turner import BRISK, ROBOT, STEP, Turner
 
 MakeTurner = Callable[..., Turner]
 
@@ -128,7 +128,8 @@ def test_what_is_fixed_at_the_start_says_so(
 @pytest.mark.parametrize(
     ('node', 'parameters', 'expected'),
     [
-        ('gait_node', {'period': 1.0}, 'period.*at least'),
+        ('gait_node', {'period': 3.0}, 'period.*3.0.*at least 4'),
+        ('gait_node', {'step_limit': 0.01}, 'step_limit.*0.01.*at least 0.013'),
         ('gait_node', {'position_limit': 1.0}, 'gait.*omega.*within 1.0 rad'),
         ('gait_node', {'robot': 'centipede'}, 'robots.*centipede.*limbless16'),
         ('admittance_node', {'gait': 'moonwalk'}, 'gaits.*moonwalk.*omega'),

@@ -10,12 +10,12 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from rclpy.qos import QoSProfile, ReliabilityPolicy
+from ros_graph import Graph, User
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
+from turner import BRISK, ROBOT, STEP, CommandWatch, FakeRobot, Turner
 
 from omega_turn_ros.gaits.limits import JointLimits
-from ros_graph import DEEP, Graph, User
-from turner import BRISK, ROBOT, STEP, CommandWatch, FakeRobot, Turner
 
 MakeTurner = Callable[..., Turner]
 ODOM = {'turns': True, 'heading_feedback': 'odom'}

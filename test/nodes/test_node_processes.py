@@ -9,14 +9,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from processes import Process
+from ros_graph import Graph, User
 from sensor_msgs.msg import JointState
+from turner import BRISK, QUICK, ROBOT, CommandWatch, Turner
 
 from omega_turn_ros.gaits.limits import JointLimits
 from omega_turn_ros.nodes.gait_node import GaitNode
 from omega_turn_sim_bridge.bridge_node import PyBulletBridge
-from processes import Process
-from ros_graph import Graph, User
-from turner import BRISK, QUICK, ROBOT, CommandWatch, Turner
 
 NODES = ('gait_node', 'admittance_node', 'pybullet_bridge')
 StartProcess = Callable[..., Process]

@@ -11,6 +11,7 @@ from nav_msgs.msg import Odometry
 from numpy.typing import NDArray
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
+from ros_graph import DEEP, Graph, User
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 
@@ -21,7 +22,6 @@ from omega_turn_ros.nodes.gait_node import WAVES, GaitNode
 from omega_turn_ros.nodes.qos import COMMAND, STATE
 from omega_turn_ros.nodes.time import nanoseconds_of, stamp_of
 from omega_turn_ros.robot import load_robot
-from ros_graph import DEEP, Graph, User
 
 Array = NDArray[np.float64]
 
@@ -29,6 +29,7 @@ ROBOT = load_robot('limbless16')
 STEP = 0.01  # [s] between two commands of a gait node at its default rate
 LONGEST_STEP = 2.5 * STEP  # [s] a gait node moves on for at most, however late it wakes
 ROUNDING = 1e-9
+TURN_PATIENCE = 120.0  # [s] for a turn that takes 2 s on an idle core
 
 # As fast as the robot's own joint speed allows, for tests that run on the robot's time.
 QUICK = {'period': 4.5, 'move_velocity': 2.5}
@@ -252,7 +253,7 @@ class Turner:
 
     def wait_for_end(self) -> None:
         """Wait until the turn is over and the robot lies straight."""
-        self.graph.spin_until(lambda: self.user.remaining[-1:] == [0.0], 'turn_remaining 0.0')
+        self.graph.spin_until(lambda: self.user.remaining[-1:] == [0.0], 'the end', TURN_PATIENCE)
         self.graph.spin_until(lambda: not self.watch.newest.any(), 'a straight body')
 
 

@@ -19,8 +19,9 @@ from std_srvs.srv import Trigger
 from tqdm import tqdm
 
 import omega_turn_lab.ros_environment  # noqa: F401  (first: it may restart the interpreter)
+from omega_turn_lab.animation import animate_turn
 from omega_turn_lab.live import NodeError, Observer, Stack, wait_until
-from omega_turn_lab.pictures import animate_turn, draw_turn
+from omega_turn_lab.pictures import draw_turn
 from omega_turn_lab.recording import BagRecorder
 from omega_turn_lab.run_record import RunRecord
 from omega_turn_ros import __version__

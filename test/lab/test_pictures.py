@@ -12,14 +12,9 @@ import pytest
 from PIL.GifImagePlugin import GifImageFile
 from PIL.PngImagePlugin import PngImageFile
 
-from omega_turn_lab.pictures import (
-    MAX_FRAMES,
-    animate_turn,
-    body_polygons,
-    draw_turn,
-    module_polygons,
-    nice_step,
-)
+from omega_turn_lab.animation import MAX_FRAMES, animate_turn
+from omega_turn_lab.body_shapes import body_polygons, module_polygons, nice_step
+from omega_turn_lab.pictures import draw_turn
 from omega_turn_lab.run_record import RunRecord
 from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.gaits.two_wave import TwoWaveGait
@@ -161,7 +156,7 @@ def test_a_record_of_another_robot_is_refused_by_name(record: RunRecord, robot: 
 
 def test_importing_the_module_leaves_matplotlib_and_pillow_alone() -> None:
     code = (
-        'import sys, omega_turn_lab.pictures; '
+        'import sys, omega_turn_lab.animation, omega_turn_lab.pictures; '
         'print([m for m in ("matplotlib", "PIL", "rclpy") if m in sys.modules])'
     )
     done = subprocess.run(

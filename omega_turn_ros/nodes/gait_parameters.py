@@ -87,7 +87,8 @@ def make_controller(values: Mapping[str, Any], robot: Robot) -> GaitController:
     )
     config = ControllerConfig(
         period=values['period'],
-        move_velocity=values['move_velocity'],
+        # Slow enough for the step limit, too: a move that is cut short leaves the body bent.
+        move_velocity=min(values['move_velocity'], 0.9 * values['step_limit'] * values['rate']),
         phase_ramp_time=values['phase_ramp_time'],
         heading_feedback=values['heading_feedback'] == 'odom',
         heading_tolerance=values['heading_tolerance'],

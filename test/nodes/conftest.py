@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import fcntl
 import itertools
 import os
+import tempfile
 from collections.abc import Callable, Iterator
 from functools import partial
+from pathlib import Path
 
 import pytest
 from ros_graph import Graph
@@ -19,16 +22,25 @@ DOMAINS = 101
 _count = itertools.count()
 
 
-@pytest.fixture
-def domain_id() -> int:
-    """A domain no other test of this process uses at the same time."""
-    return 1 + (os.getpid() + next(_count)) % DOMAINS
+@pytest.fixture(scope='session')
+def domain_id() -> Iterator[int]:
+    """A domain that no other test run on this machine uses at the same time."""
+    for attempt in range(DOMAINS):
+        domain = 1 + (os.getpid() + attempt) % DOMAINS
+        with (Path(tempfile.gettempdir()) / f'omega_turn_domain_{domain}.lock').open('w') as lock:
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                continue
+            yield domain
+            return
+    pytest.fail(f'all {DOMAINS} domains are in use')
 
 
 @pytest.fixture
-def namespace(domain_id: int) -> str:
-    """Keeps two test runs apart that meet on one domain."""
-    return f'/run_{os.getpid()}_{domain_id}'
+def namespace() -> str:
+    """Keeps the tests of a run apart, and runs that meet on one domain."""
+    return f'/run_{os.getpid()}_{next(_count)}'
 
 
 @pytest.fixture

@@ -11,7 +11,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from ros_graph import PATIENCE, Graph
+from ros_graph import PATIENCE
 
 
 def executable(name: str) -> str:
@@ -25,22 +25,23 @@ def executable(name: str) -> str:
 
 
 class Process:
-    """One node in a process of its own, on the domain and in the namespace of a graph.
+    """One node in a process of its own.
 
     Args:
-        graph: the graph it joins.
+        domain_id: it joins.
+        namespace: of the node.
         name: of the executable.
         parameters: of the node.
     """
 
-    def __init__(self, graph: Graph, name: str, **parameters: Any) -> None:
-        command = [executable(name), '--ros-args', '-r', f'__ns:={graph.namespace}']
+    def __init__(self, domain_id: int, namespace: str, name: str, **parameters: Any) -> None:
+        command = [executable(name), '--ros-args', '-r', f'__ns:={namespace}']
         for key, value in parameters.items():
             command += ['-p', f'{key}:={value}']
         self._stderr = tempfile.TemporaryFile()  # noqa: SIM115 (lives as long as the process)
         self._process = subprocess.Popen(
             command,
-            env={**os.environ, 'ROS_DOMAIN_ID': str(graph.domain_id)},
+            env={**os.environ, 'ROS_DOMAIN_ID': str(domain_id)},
             stdout=subprocess.DEVNULL,
             stderr=self._stderr,
         )

@@ -70,6 +70,10 @@ class Graph:
             assert time.monotonic() < deadline, f'waited {patience:g} s in vain for {what}'
             self.executor.spin_once(timeout_sec=0.05)
 
+    def names(self) -> list[str]:
+        """Return the names of all nodes on the domain, those of other processes included."""
+        return list(self._nodes[0].get_node_names())
+
     def close(self) -> None:
         """Destroy everything."""
         self.executor.shutdown()

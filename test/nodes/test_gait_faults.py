@@ -102,10 +102,9 @@ def act(turner: Turner, action: Action) -> None:
 @settings(max_examples=8, deadline=None)
 @given(sequence=SEQUENCES)
 def test_no_sequence_of_commands_and_faults_breaks_a_limit(
-    sequence: list[tuple[Action, int]],
+    domain_id: int, sequence: list[tuple[Action, int]]
 ) -> None:
-    domain = 1 + os.getpid() % 101
-    graph = Graph(domain, f'/faults_{os.getpid()}')
+    graph = Graph(domain_id, f'/faults_{os.getpid()}')
     try:
         turner = Turner(
             graph,

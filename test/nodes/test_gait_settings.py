@@ -281,3 +281,22 @@ def test_every_command_type_carries_the_same_positions(graph: Graph) -> None:
         assert list(point.points[0].velocities) == list(state.velocity)
         due = point.points[0].time_from_start
         assert len(point.points) == 1 and due.sec + due.nanosec * 1e-9 == pytest.approx(STEP)
+
+
+def test_moves_keep_the_step_limit_and_arrive_all_the_same(graph: Graph) -> None:
+    posture = np.zeros(ROBOT.n_joints)
+    posture[6] = 1.2
+    turner = Turner(graph, posture=posture, velocity_limit=50.0, move_velocity=20.0)
+    turner.wait_for_commands(1)
+    turner.user.turn(0.0)
+    graph.spin_until(lambda: not turner.watch.newest.any(), 'a straight body')
+    assert np.abs(np.diff(turner.watch.positions, axis=0)).max() > 0.05  # and do not dawdle
+
+
+def test_the_joint_limit_holds_where_offsets_would_bend_over_it(graph: Graph) -> None:
+    turner = Turner(graph, use_compliance=True)
+    turner.robot.offsets = (0.5, 0.5)
+    turner.start_turn(1.5)
+    turner.wait_for_end()
+    assert np.abs(turner.watch.positions).max() == pytest.approx(ROBOT.position_limit)
+    assert int(turner.user.fact('gait_node', 'commands limited')) > 5

@@ -23,12 +23,12 @@ StartProcess = Callable[..., Process]
 
 
 @pytest.fixture
-def start_process(graph: Graph) -> Iterator[StartProcess]:
+def start_process(domain_id: int, namespace: str) -> Iterator[StartProcess]:
     """Starts nodes in processes that end with the test."""
     started: list[Process] = []
 
     def start(name: str, **parameters: Any) -> Process:
-        started.append(Process(graph, name, **parameters))
+        started.append(Process(domain_id, namespace, name, **parameters))
         return started[-1]
 
     yield start
@@ -47,6 +47,7 @@ def test_a_signal_ends_a_node_cleanly(
     assert process.end(number) == 0
     assert 'Traceback' not in process.stderr
     assert 'rror' not in process.stderr
+    graph.spin_until(lambda: name not in graph.names(), 'its leave of the graph')
 
 
 @pytest.mark.parametrize(
@@ -114,7 +115,7 @@ def test_the_bridge_holds_the_posture_when_the_gait_node_is_killed(
     assert np.abs(later - held).max() < 0.05
 
 
-def test_a_turn_survives_a_bridge_that_is_killed_and_restarted(
+def test_a_turn_survives_a_bridge_that_is_restarted(
     graph: Graph, start_process: StartProcess
 ) -> None:
     bridge = {'real_time_factor': 2.0}
@@ -126,10 +127,12 @@ def test_a_turn_survives_a_bridge_that_is_killed_and_restarted(
     graph.spin_until(lambda: watch.messages, 'commands')
     user.turn(0.8)
     graph.spin_until(lambda: np.abs(watch.newest).max() > 0.8, 'a cycle')
-    first.end(signal.SIGKILL)
+    assert first.end(signal.SIGTERM) == 0
     user.wait_for_problem('gait_node', 'joint_states stale')
     assert user.remaining[-1] != 0.0
-    start_process('pybullet_bridge', **bridge)
+    second = start_process('pybullet_bridge', **bridge)
     graph.spin_until(lambda: user.remaining[-1] == 0.0, 'the end of the turn')
     graph.spin_until(lambda: np.abs(watch.newest).max() < 1e-3, 'a straight body')
     assert int(user.fact('gait_node', 'clock jumps')) >= 1
+    assert second.end(signal.SIGTERM) == 0
+    graph.spin_until(lambda: 'pybullet_bridge' not in graph.names(), 'its leave of the graph')

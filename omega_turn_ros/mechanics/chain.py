@@ -39,19 +39,33 @@ class ShapeState:
 class PlanarChain:
     """N + 1 rigid links joined by N yaw joints, resting on `points_per_link` points each.
 
-    The points of a link are Gauss-Legendre nodes carrying the matching share of its weight, so two
+    The points of a link are Gauss-Legendre nodes carrying the matching share of its load, so two
     points already have the mean and the second moment of a uniformly loaded line.
 
     Args:
         link_lengths: [m], head first, shape (L,), L >= 2.
-        weight: total normal force [N], spread in proportion to length.
-        points_per_link: contact points on each link.
+        weight: total normal force [N].
+        points_per_link: contact points along each link.
+        loads: share of the weight on each link, any unit, shape (L,); in proportion to length if
+            not given.
+        width: of the contact patch [m]; 0 is a line.
+        points_across: rows of contact points over the width.
 
     Raises:
-        BadInputError: fewer than two links, or a length, weight or count that is not positive.
+        BadInputError: fewer than two links, or a length, load, weight or count that is not
+            positive.
     """
 
-    def __init__(self, link_lengths: ArrayLike, weight: float = 1.0, points_per_link: int = 4):
+    def __init__(
+        self,
+        link_lengths: ArrayLike,
+        weight: float = 1.0,
+        points_per_link: int = 4,
+        *,
+        loads: ArrayLike | None = None,
+        width: float = 0.0,
+        points_across: int = 1,
+    ):
         lengths = np.array(link_lengths, float)
         if lengths.ndim != 1 or lengths.size < 2:
             raise BadInputError('link_lengths', lengths.shape, 'at least two lengths [m]')
@@ -59,14 +73,27 @@ class PlanarChain:
             raise BadInputError('link_lengths', lengths.tolist(), 'finite lengths > 0 [m]')
         if not np.isfinite(weight) or weight <= 0.0:
             raise BadInputError('weight', weight, 'a finite weight > 0 [N]')
-        if points_per_link < 1:
-            raise BadInputError('points_per_link', points_per_link, 'at least 1')
-        nodes, shares = np.polynomial.legendre.leggauss(points_per_link)
+        if not np.isfinite(width) or width < 0.0:
+            raise BadInputError('width', width, 'a finite width >= 0 [m]')
+        for field, count in (
+            ('points_per_link', points_per_link),
+            ('points_across', points_across),
+        ):
+            if count < 1:
+                raise BadInputError(field, count, 'at least 1')
+        shares = lengths if loads is None else np.array(loads, float)
+        if shares.shape != lengths.shape or not np.all(np.isfinite(shares) & (shares > 0.0)):
+            raise BadInputError('loads', shares.tolist(), f'{lengths.size} finite loads > 0')
+        along, along_share = np.polynomial.legendre.leggauss(points_per_link)
+        across, across_share = np.polynomial.legendre.leggauss(points_across)
+        along, across = (grid.ravel() for grid in np.meshgrid(along, across, indexing='ij'))
+        point_share = 0.25 * np.outer(along_share, across_share).ravel()
         self.lengths = lengths
         self.fractions = lengths / lengths.sum()
-        self.link_of_point = np.repeat(np.arange(lengths.size), points_per_link)
-        self.point_offsets = (0.5 * lengths[:, None] * nodes).ravel()
-        self.normal_forces = (weight * self.fractions[:, None] * 0.5 * shares).ravel()
+        self.link_of_point = np.repeat(np.arange(lengths.size), along.size)
+        self.point_offsets = (0.5 * lengths[:, None] * along).ravel()
+        self.point_sides = np.tile(0.5 * width * across, lengths.size)
+        self.normal_forces = (weight * (shares / shares.sum())[:, None] * point_share).ravel()
 
     @classmethod
     def of_robot(cls, robot: Robot, points_per_link: int = 4) -> PlanarChain:
@@ -99,10 +126,14 @@ class PlanarChain:
         tangent_rate = alpha_rate[..., None] * normal
         centres, joints = self._centres(tangent)
         centre_rates, _ = self._centres(tangent_rate)
+        normal_rate = -alpha_rate[..., None] * tangent
         link, along = self.link_of_point, self.point_offsets[:, None]
+        left = self.point_sides[:, None]
+        place = along * tangent[..., link, :] + left * normal[..., link, :]
+        place_rate = along * tangent_rate[..., link, :] + left * normal_rate[..., link, :]
         return ShapeState(
-            centres[..., link, :] + along * tangent[..., link, :],
-            centre_rates[..., link, :] + along * tangent_rate[..., link, :],
+            centres[..., link, :] + place,
+            centre_rates[..., link, :] + place_rate,
             alpha,
             joints,
         )

@@ -46,15 +46,29 @@ def pose_along(chain: PlanarChain, path: ArrayLike) -> Array:
     """
     shapes = np.asarray(path, float)
     step = np.diff(shapes, axis=0)
-    twists = body_velocity(chain, shapes[:-1] + 0.5 * step, step)
-    pose = np.zeros((shapes.shape[0], 3))
-    for i, (vx, vy, turn) in enumerate(twists):
-        # sinc forms stay exact as the turn goes to zero
-        a = np.sinc(turn / np.pi)
-        b = 0.5 * turn * np.sinc(0.5 * turn / np.pi) ** 2
-        c, s = np.cos(pose[i, 2]), np.sin(pose[i, 2])
-        dx, dy = a * vx - b * vy, b * vx + a * vy
-        pose[i + 1] = pose[i] + (c * dx - s * dy, s * dx + c * dy, turn)
+    return integrate_twists(body_velocity(chain, shapes[:-1] + 0.5 * step, step))
+
+
+def integrate_twists(twists: ArrayLike) -> Array:
+    """Chain SE(2) motions, each of constant body velocity for one unit of time.
+
+    Args:
+        twists: body velocities [m, m, rad] per step, shape (T, 3).
+
+    Returns:
+        Poses from the origin: x [m], y [m], heading [rad], shape (T + 1, 3).
+    """
+    vx, vy, turn = np.asarray(twists, float).T
+    heading = np.concatenate([[0.0], np.cumsum(turn)])
+    # sinc forms stay exact as the turn goes to zero
+    a = np.sinc(turn / np.pi)
+    b = 0.5 * turn * np.sinc(0.5 * turn / np.pi) ** 2
+    dx, dy = a * vx - b * vy, b * vx + a * vy
+    c, s = np.cos(heading[:-1]), np.sin(heading[:-1])
+    pose = np.zeros((heading.size, 3))
+    np.cumsum(c * dx - s * dy, out=pose[1:, 0])
+    np.cumsum(s * dx + c * dy, out=pose[1:, 1])
+    pose[:, 2] = heading
     return pose
 
 

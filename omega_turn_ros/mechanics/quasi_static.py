@@ -1,0 +1,124 @@
+"""Quasi-static motion of a chain on a ground, compiled: one shape, a batch, or a path.
+
+The same mechanics as `force_balance`, some hundred times faster and for any force law; that module
+needs numpy only, so the nodes stay small, and checks this one.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from omega_turn_ros.errors import BadInputError, ConvergenceError
+from omega_turn_ros.mechanics.chain import PlanarChain
+from omega_turn_ros.mechanics.force_laws import CoulombFriction, ForceLaw
+from omega_turn_ros.mechanics.kernel import velocities
+from omega_turn_ros.mechanics.trajectory import integrate_twists
+
+Array = NDArray[np.float64]
+
+ISOTROPIC = CoulombFriction()
+
+
+class QuasiStatic:
+    """A chain on a ground (Sec. IV.A: body velocity from force and torque balance).
+
+    Args:
+        chain: the robot.
+        law: of the ground, isotropic kinetic Coulomb friction if not given.
+    """
+
+    def __init__(self, chain: PlanarChain, law: ForceLaw = ISOTROPIC) -> None:
+        self.chain = chain
+        self.law = law
+        self._arguments = (
+            law.kind,
+            law.parameters,
+            chain.lengths,
+            chain.link_of_point,
+            chain.point_offsets,
+            chain.point_sides,
+            chain.normal_forces / chain.normal_forces.sum(),
+        )
+
+    def body_velocity(self, angles: ArrayLike, rates: ArrayLike) -> Array:
+        """Velocity of the mean body frame at which ground forces and torque balance.
+
+        Each shape of a batch starts from the solution of the one before, so a batch in the order
+        of a path is solved fastest.
+
+        Args:
+            angles: yaw joint angles [rad], shape (..., N).
+            rates: their time derivatives [rad/s], shape (..., N).
+
+        Returns:
+            [xi_x, xi_y, xi_theta] in the mean body frame [m/s, m/s, rad/s], shape (..., 3).
+
+        Raises:
+            BadInputError: the last axis is not N, or a value is not finite.
+            ConvergenceError: a shape was not solved.
+        """
+        q = self._checked('angles', angles)
+        dq = self._checked('rates', rates)
+        q, dq = np.broadcast_arrays(q, dq)
+        flat = (-1, self.chain.n_joints)
+        xi, failed = velocities(
+            *self._arguments,
+            np.ascontiguousarray(q.reshape(flat)),
+            np.ascontiguousarray(dq.reshape(flat)),
+        )
+        if failed:
+            raise ConvergenceError(f'force balance: {failed} of {xi.shape[0]} shapes unsolved')
+        result: Array = xi.reshape(*q.shape[:-1], 3)
+        return result
+
+    def displacements(self, path: ArrayLike) -> Array:
+        """Body displacement in each step along a path of shapes, by the midpoint rule.
+
+        Args:
+            path: yaw joint angles [rad], shape (..., T, N), T >= 2.
+
+        Returns:
+            Motion during each step in the mean body frame at its middle [m, m, rad], shape
+            (..., T - 1, 3). Rate-independent: only the sequence of shapes counts.
+        """
+        shapes = self._checked('path', path)
+        step = np.diff(shapes, axis=-2)
+        return self.body_velocity(shapes[..., :-1, :] + 0.5 * step, step)
+
+    def heading_along(self, path: ArrayLike) -> Array:
+        """Heading of the mean body axis along a path [rad], 0 at its start.
+
+        Args:
+            path: yaw joint angles [rad], shape (..., T, N), T >= 2.
+
+        Returns:
+            Heading, shape (..., T).
+        """
+        turn = self.displacements(path)[..., 2]
+        heading = np.zeros((*turn.shape[:-1], turn.shape[-1] + 1))
+        np.cumsum(turn, axis=-1, out=heading[..., 1:])
+        return heading
+
+    def pose_along(self, path: ArrayLike) -> Array:
+        """Pose of the mean body frame along one path from the origin, exact in SE(2) per step.
+
+        Args:
+            path: yaw joint angles [rad], shape (T, N), T >= 2.
+
+        Returns:
+            x [m], y [m], heading [rad] in the world, shape (T, 3).
+        """
+        return integrate_twists(self.displacements(path))
+
+    def turn(self, path: ArrayLike) -> float:
+        """Heading change over a path [rad]; for a closed path the angle per cycle."""
+        return float(self.displacements(path)[..., 2].sum())
+
+    def _checked(self, field: str, values: ArrayLike) -> Array:
+        array = np.asarray(values, float)
+        if array.ndim < 1 or array.shape[-1] != self.chain.n_joints:
+            raise BadInputError(field, array.shape, f'shape (..., {self.chain.n_joints})')
+        if not np.isfinite(array).all():
+            raise BadInputError(field, 'NaN or Inf', 'finite numbers')
+        return array

@@ -20,7 +20,7 @@ from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.gaits.two_wave import TwoWaveGait
 
 DRAWS = 40  # random gaits of which each start takes the best
-PROPOSALS = 8  # of a plane, tried with the nonlinear force balance
+PROPOSALS = 5  # of a plane, tried with the nonlinear force balance
 ROUNDS = 30  # at most, each through all three planes
 FIRST_SPREAD, LAST_SPREAD = 1.0, 0.01
 AGREEMENT = 0.01

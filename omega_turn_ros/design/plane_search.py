@@ -13,15 +13,16 @@ from omega_turn_ros.mechanics.shape_grid import GridFunction
 
 Array = NDArray[np.float64]
 
-GRID = 24  # points along each axis of a plane
-STEPS = 48  # of a path in a plane
-CANDIDATES = 240
+GRID = 20  # points along each axis of a plane
+STEPS = 40  # of a path in a plane
+CANDIDATES = {'turning': 160, 'forward': 240, 'phase': 60}
 REACH = 1.6  # largest amplitude in a plane, over the joint limit
+SLOPE = 0.4  # spread of the paths' slopes over that of their parameters
 
-PARAMETERS: dict[Plane, tuple[str, ...]] = {
-    'turning': ('a_o', 'phi_o'),
-    'forward': ('a_f', 'gamma', 'phi_f'),
-    'phase': ('psi',),
+PARAMETERS: dict[Plane, dict[str, float]] = {  # and what a spread of 1 means for them
+    'turning': {'a_o': 0.2, 'phi_o': 0.5},
+    'forward': {'a_f': 0.2, 'gamma': 0.3, 'phi_f': 0.5},
+    'phase': {'psi': 0.5},
 }
 
 
@@ -31,68 +32,56 @@ def propose(
     """Gaits that differ from the given one in one function only, best predicted turn first.
 
     Candidates, half of them around the gait's own function and half from everywhere, are paths in
-    the plane. Each is given the turn that the linear connection predicts: surface term and loops of
-    `mechanics.height_function`. A path that enters the infeasible region by bending joints too far
-    counts as shrunk, with the whole gait, until it keeps the limit. The mirrored gait turns back,
-    so a turn is odd in amplitude; it starts with the third power because small paths enclose areas
-    that grow with the second, over heights that grow with the first (own derivation).
+    the plane. Each is given the turn that the linear connection predicts: surface term and loops
+    of `mechanics.height_function`. A path that enters the infeasible region counts as shrunk, with
+    the whole gait, until it does not. The mirrored gait turns back, so a turn is odd in amplitude;
+    it starts with the third power because small paths enclose areas that grow with the second,
+    over heights that grow with the first (own derivation).
 
     Args:
         sub: plane around the gait.
-        spread: of the candidates around the gait's own function: 1 is half a radian in phase.
+        spread: of the candidates around the gait's own function, 1 is half a radian in phase; the
+            connection is fitted to slopes spread as wide.
         rng: source of the candidates.
         count: how many to return.
     """
     reach = REACH * sub.problem.theta_max
-    values = _candidates(sub, spread, reach, rng)
-    first, second = _paths(sub, values)
-    field = sub.field(GRID, reach)
-    if sub.plane != 'phase':
-        inside = np.abs(second).max(axis=1) <= reach
-        values, first, second = values[inside], first[inside], second[inside]
-    # The loops are the same for all candidates of a plane: they do not change the order,
-    # but the sign of what is shrunk.
+    values, first, second = _candidates(sub, spread, reach, rng)
+    field = sub.field(GRID, reach, SLOPE * spread)
+    # The loops are the same for all candidates of a plane, but count where one is shrunk.
     loops = field.loops(np.stack([first[0], second[0]], axis=-1))
     turn = field.integrated_height().surface(first, second) + loops
-    limits = sub.feasibility(grid(field.axes))
-    bend = GridFunction(field.axes, limits.bend)(first, second).max(axis=1)
-    clearance = GridFunction(field.axes, np.minimum(limits.clearance, 1.0))(first, second)
-    turn *= np.minimum(1.0, 1.0 / bend) ** 3
-    turn[(clearance.min(axis=1) < -sub.problem.width) & (bend <= 1.0)] = -np.inf
+    allowed = GridFunction(field.axes, sub.allowed_scale(grid(field.axes)), degree=1)
+    turn *= allowed(first, second).min(axis=1) ** 3
     best = np.argsort(-turn, kind='stable')[:count]
-    names = PARAMETERS[sub.plane]
-    return [
-        replace(sub.gait, **dict(zip(names, (float(v) for v in values[i]), strict=True)))
-        for i in best
-    ]
+    names = tuple(PARAMETERS[sub.plane])
+    return [replace(sub.gait, **dict(zip(names, values[i].tolist()))) for i in best]
 
 
-def _candidates(sub: SubShape, spread: float, reach: float, rng: np.random.Generator) -> Array:
-    """Parameters of the candidates [rad] and [-], shape (CANDIDATES, parameters)."""
-    half = CANDIDATES // 2
-    own = np.array([getattr(sub.gait, name) for name in PARAMETERS[sub.plane]])
-    scale = {'turning': (0.2, 0.5), 'forward': (0.2, 0.3, 0.5), 'phase': (0.5,)}[sub.plane]
-    near = own + spread * np.array(scale) * rng.normal(size=(half, own.size))
+def _candidates(
+    sub: SubShape, spread: float, reach: float, rng: np.random.Generator
+) -> tuple[Array, Array, Array]:
+    """Parameters, shape (C, parameters), and paths r_1 and r_2 [rad], each (C, STEPS + 1)."""
+    half = CANDIDATES[sub.plane] // 2
+    scales = PARAMETERS[sub.plane]
+    own = np.array([getattr(sub.gait, name) for name in scales])
+    near = own + spread * np.array(list(scales.values())) * rng.normal(size=(half, own.size))
     phase = rng.uniform(-np.pi, np.pi, half)
-    amplitude = rng.uniform(-1.0, 1.0, half) * reach
-    if sub.plane == 'turning':
-        far = np.stack([0.5 * amplitude, phase], axis=-1)
-    elif sub.plane == 'forward':
-        mean = rng.uniform(-1.2, 1.2, half)
-        far = np.stack([amplitude / (1.0 + np.abs(mean)), mean, phase], axis=-1)
-    else:
-        far = phase[:, None]
-    return np.concatenate([near, far])
-
-
-def _paths(sub: SubShape, values: Array) -> tuple[Array, Array]:
-    """Closed paths of candidates in the plane, r_1 and r_2 [rad], each shape (C, STEPS + 1)."""
-    first = np.linspace(0.0, 2.0 * np.pi, STEPS + 1)
+    amplitude = rng.uniform(-reach, reach, half)
+    mean = rng.uniform(-1.2, 1.2, half)
+    far = {
+        'turning': (0.5 * amplitude, phase),
+        'forward': (amplitude / (1.0 + np.abs(mean)), mean, phase),
+        'phase': (phase,),
+    }
+    values = np.concatenate([near, np.stack(far[sub.plane], axis=-1)])
     columns = values.T[..., None]
+    first = np.broadcast_to(np.linspace(0.0, 2.0 * np.pi, STEPS + 1), (len(values), STEPS + 1))
+    if sub.plane == 'phase':
+        return values, first, first + columns[0]
     if sub.plane == 'turning':
         second = columns[0] * (1.0 + np.sin(first + columns[1]))
-    elif sub.plane == 'forward':
-        second = columns[0] * (columns[1] + np.sin(first + columns[2]))
     else:
-        second = first + columns[0]
-    return np.broadcast_to(first, second.shape), second
+        second = columns[0] * (columns[1] + np.sin(first + columns[2]))
+    inside = np.abs(second).max(axis=1) <= reach
+    return values[inside], first[inside], second[inside]

@@ -28,6 +28,7 @@ from omega_turn_ros.mechanics.shape_grid import ShapeAxis
 
 Array = NDArray[np.float64]
 Plane = Literal['turning', 'forward', 'phase']
+BISECTIONS = 8
 PLANES: tuple[Plane, ...] = ('turning', 'forward', 'phase')
 
 
@@ -165,25 +166,59 @@ class SubShape:
             return first, first
         return first, ShapeAxis(np.linspace(-reach, reach, points))
 
-    def field(self, points: int = 64, reach: float | None = None) -> ConnectionField:
+    def field(
+        self, points: int = 64, reach: float | None = None, spread: float | None = None
+    ) -> ConnectionField:
         """Local connection on a grid of the plane.
 
         Args:
             points: along each axis.
             reach: largest amplitude of the grid [rad], 1.5 times the joint limit if not given.
+            spread: fit to paths whose slope dr_2/dr_1 is the gait's own plus and minus this; to
+                all directions if not given.
 
         Raises:
             ConvergenceError: the force balance of a shape was not solved.
         """
         axes = self.axes(points, 1.5 * self.problem.theta_max if reach is None else reach)
-        fit = local_connection(self.problem.motion, *self.shapes(grid(axes)))
+        directions = None if spread is None else self._directions(axes[0].values, spread)
+        fit = local_connection(self.problem.motion, *self.shapes(grid(axes)), directions)
         return ConnectionField(axes, fit.matrix, fit.misfit)
+
+    def _directions(self, first: Array, spread: float) -> Array:
+        """Directions (1, slope of the gait -+ spread) over r_1, shape (n_1, 1, 2, 2)."""
+        gait = self.gait
+        if self.plane == 'turning':
+            slope = _amplitude(gait.a_o, 1.0, first + gait.phi_o)[1]
+        elif self.plane == 'forward':
+            slope = _amplitude(gait.a_f, gait.gamma, first + gait.phi_f)[1]
+        else:
+            slope = np.ones_like(first)
+        slopes = slope[:, None, None] + spread * np.array([-1.0, 1.0])
+        return np.stack([np.ones_like(slopes), slopes], axis=-1)
 
     def feasibility(self, r: ArrayLike) -> Feasibility:
         """Distance from both limits at points of the plane [rad, rad], shape (..., 2)."""
         theta, _ = self.shapes(r)
         bend = np.abs(theta).max(axis=-1) / self.problem.theta_max
         return Feasibility(bend, self_clearance(self.problem.chain, self.problem.width, theta))
+
+    def allowed_scale(self, r: ArrayLike) -> Array:
+        """Largest factor up to 1 by which a shape keeps both limits, points (..., 2) -> (...)."""
+        problem = self.problem
+        theta, _ = self.shapes(r)
+        flat = theta.reshape(-1, theta.shape[-1])
+        scale = np.minimum(1.0, problem.theta_max / np.maximum(np.abs(flat).max(axis=1), 1e-12))
+        shrunk = scale[:, None] * flat
+        (open_,) = np.nonzero(self_clearance(problem.chain, problem.width, shrunk) < 0.0)
+        low, high = np.zeros(open_.size), np.ones(open_.size)
+        for _ in range(BISECTIONS):
+            middle = 0.5 * (low + high)
+            clear = self_clearance(problem.chain, problem.width, middle[:, None] * shrunk[open_])
+            low = np.where(clear >= 0.0, middle, low)
+            high = np.where(clear >= 0.0, high, middle)
+        scale[open_] *= low
+        return scale.reshape(theta.shape[:-1])
 
 
 def grid(axes: tuple[ShapeAxis, ShapeAxis]) -> Array:

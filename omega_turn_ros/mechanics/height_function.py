@@ -113,20 +113,22 @@ class IntegratedHeight:
     def __init__(
         self, axes: tuple[ShapeAxis, ShapeAxis], height: Array, reference: float = 0.0
     ) -> None:
-        second = axes[1]
+        first, second = axes
         # What a full period adds grows linearly; the rest is periodic and can be tabulated.
-        mean = height.mean(axis=1, keepdims=True) if second.cyclic else 0.0 * height[:, :1]
+        mean = height.mean(axis=1, keepdims=True) * second.cyclic
+        table = second.antiderivative(height - mean, axis=1)
+        start = GridFunction(axes, table)(first.values, reference)[:, None]
         self._reference = reference
-        self._mean = GridFunction(axes, np.broadcast_to(mean, height.shape))
-        self._rest = GridFunction(axes, second.antiderivative(height - mean, axis=1))
+        self._bounded = GridFunction(axes, table - start)
+        self._rise = first.interpolator(mean[:, 0]) if second.cyclic else None
 
     def __call__(self, first: ArrayLike, second: ArrayLike) -> Array:
         """H at points (r_1, r_2) [rad], shapes (...): [m/rad] or [rad/rad], shape (...)."""
-        x, y = np.broadcast_arrays(np.asarray(first, float), np.asarray(second, float))
-        start = self._rest(x, np.full_like(x, self._reference))
-        rise = self._mean(x, np.zeros_like(x)) * (y - self._reference)
-        result: Array = rise + self._rest(x, y) - start
-        return result
+        bounded = self._bounded(first, second)
+        if self._rise is None:
+            return bounded
+        rise: Array = self._rise(first) * (np.asarray(second, float) - self._reference)
+        return bounded + rise
 
     def surface(self, first: Array, second: Array) -> Array:
         """Surface term for many closed paths, both ends given [rad], shapes (..., T + 1)."""

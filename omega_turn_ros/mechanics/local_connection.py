@@ -59,17 +59,26 @@ def shape_directions(m: int) -> Array:
 
 
 def local_connection(
-    motion: QuasiStatic, angles: ArrayLike, jacobian: ArrayLike
+    motion: QuasiStatic,
+    angles: ArrayLike,
+    jacobian: ArrayLike,
+    directions: ArrayLike | None = None,
 ) -> LocalConnection:
-    """Fit the connection by least squares over all directions of shape velocity.
+    """Fit the connection by least squares over directions of shape velocity.
 
     The force balance starts each shape from the one before it: lay a grid out so that neighbours
     along its last axis are similar shapes.
+
+    Fitted to directions close to one field of directions u(r), the connection is exact to first
+    order for all paths near the one that follows it, because xi is homogeneous in dr/dt (Euler's
+    theorem; own derivation): such paths have the right turn and the right gradient of it.
 
     Args:
         motion: the body on its ground.
         angles: yaw joint angles theta at r [rad], shape (..., N).
         jacobian: d theta / d r [rad per unit of r], shape (..., N, m).
+        directions: u to fit to, shape (..., K, m); `shape_directions`, which favour no direction,
+            if not given.
 
     Raises:
         BadInputError: the shapes do not fit together, or a value is not finite.
@@ -79,13 +88,15 @@ def local_connection(
     if columns.ndim < 2 or columns.shape[:-1] != shapes.shape:
         raise BadInputError('jacobian', columns.shape, f'shape {(*shapes.shape, "m")}')
     m = columns.shape[-1]
-    directions = shape_directions(m)
+    u = shape_directions(m) if directions is None else np.asarray(directions, float)
+    if u.ndim < 2 or u.shape[-1] != m or u.shape[-2] < m:
+        raise BadInputError('directions', u.shape, f'at least {m} directions of {m} numbers')
     # Directions outermost: within one, each shape is a good guess for the next.
-    rates = np.moveaxis(columns @ directions.T, -1, 0)
-    xi = motion.body_velocity(np.broadcast_to(shapes, rates.shape), rates)  # (K, ..., 3)
-    matrix = np.einsum('k...i,kj->...ij', xi, directions) * (m / len(directions))
-    error = np.einsum('...ij,kj->k...i', matrix, directions) - xi
+    rates = np.moveaxis(columns @ np.swapaxes(u, -1, -2), -1, 0)
+    xi = np.moveaxis(motion.body_velocity(np.broadcast_to(shapes, rates.shape), rates), 0, -2)
+    matrix = np.swapaxes(np.linalg.pinv(u) @ xi, -1, -2)
+    error = u @ np.swapaxes(matrix, -1, -2) - xi
     size = np.array([1.0, 1.0, 0.5 * motion.chain.lengths.sum()])
-    missed, whole = (np.square(v * size).sum(axis=(0, -1)) for v in (error, xi))
+    missed, whole = (np.square(v * size).sum(axis=(-2, -1)) for v in (error, xi))
     share = np.divide(missed, whole, out=np.zeros_like(whole), where=whole > 0.0)
     return LocalConnection(matrix, np.sqrt(share))

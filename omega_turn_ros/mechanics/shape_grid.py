@@ -58,6 +58,10 @@ class ShapeAxis:
         """Integral of tabulated values from the first grid value on, in the shape of the table."""
         return np.asarray(self._spline(table, axis).antiderivative()(self.values))
 
+    def interpolator(self, table: ArrayLike) -> CubicSpline:
+        """Cubic spline through values on this axis, shape (n,); periodic on a cyclic axis."""
+        return self._spline(table, 0)
+
     def _spline(self, table: ArrayLike, axis: int) -> CubicSpline:
         rows = np.asarray(table, float)
         if not self.cyclic:
@@ -95,14 +99,17 @@ class ShapeAxis:
 
 
 class GridFunction:
-    """Bicubic interpolation of a table, periodic where an axis is cyclic.
+    """Interpolation of a table by splines, periodic where an axis is cyclic.
 
     Args:
         axes: of r_1 and r_2.
         table: values on the grid, any unit, shape (n_1, n_2).
+        degree: of the splines, 3 or, for tables with kinks, 1.
     """
 
-    def __init__(self, axes: tuple[ShapeAxis, ShapeAxis], table: ArrayLike) -> None:
+    def __init__(
+        self, axes: tuple[ShapeAxis, ShapeAxis], table: ArrayLike, degree: int = 3
+    ) -> None:
         values = np.asarray(table, float)
         expected = (axes[0].values.size, axes[1].values.size)
         if values.shape != expected:
@@ -110,7 +117,7 @@ class GridFunction:
         self.axes = axes
         first, values = axes[0].extended(values, 0)
         second, values = axes[1].extended(values, 1)
-        self._spline = RectBivariateSpline(first, second, values)
+        self._spline = RectBivariateSpline(first, second, values, kx=degree, ky=degree)
 
     def __call__(self, first: ArrayLike, second: ArrayLike) -> Array:
         """Evaluate at points (r_1, r_2) [rad], broadcastable shapes (...); result shape (...).
@@ -120,4 +127,4 @@ class GridFunction:
         """
         x = self.axes[0].located('r_1', first)
         y = self.axes[1].located('r_2', second)
-        return np.asarray(self._spline.ev(x, y))
+        return np.asarray(self._spline.ev(*np.broadcast_arrays(x, y)))

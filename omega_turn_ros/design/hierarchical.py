@@ -24,6 +24,8 @@ PROPOSALS = 5  # of a plane, tried with the nonlinear force balance
 ROUNDS = 30  # at most, each through all three planes
 FIRST_SPREAD, LAST_SPREAD = 1.0, 0.01
 AGREEMENT = 0.01
+GAIN = 0.01
+SHRINK = 0.5
 
 
 def design_hierarchical(problem: DesignProblem, seed: int = 0, starts: int = 8) -> Design:
@@ -80,8 +82,8 @@ class _Climb:
                 sub = SubShape(self.problem, self.gait, plane)
                 for candidate in propose(sub, spread, self.rng, PROPOSALS):
                     self.consider(candidate)
-            if self.angle < 1.01 * before:
-                spread *= 0.5
+            if self.angle < (1.0 + GAIN) * before:
+                spread *= SHRINK
             if spread < LAST_SPREAD:
                 self.reason = f'converged'
                 return

@@ -95,27 +95,30 @@ class _Climb:
             return
         angle = self.problem.turn(self.problem.path(fitted, self.problem.samples))
         self.evaluations += 1
-        if abs(angle) > self.angle and (angle>0 or not self.angle):
+        if abs(angle) > self.angle and (angle > 0 or not self.angle):
             self.gait, self.angle = (fitted if angle > 0.0 else fitted.mirrored()), abs(angle)
 
 
 def _random_gait(problem, rng):
-    gamma, phi_f, phi_o, psi = rng.uniform(-1,1), *rng.uniform(-np.pi, np.pi, 3)
+    gamma, phi_f, phi_o, psi = rng.uniform(-1, 1), *rng.uniform(-np.pi, np.pi, 3)
     share = rng.uniform(0.2, 0.8)
-    return TwoWaveGait(problem.k_f, problem.k_t, share, gamma, phi_f, 1-share, phi_o, psi)
+    return TwoWaveGait(problem.k_f, problem.k_t, share, gamma, phi_f, 1 - share, phi_o, psi)
 
 
 def _fit(problem, gait):
     path = problem.path(gait, problem.samples)[:-1]
     largest = np.abs(path).max()
-    scale = problem.theta_max/largest
-    path*=scale
+    scale = problem.theta_max / largest
+    path *= scale
     if problem.clearance(path) < 0:
         lo, hi = 0.85, 1.0
-        if problem.clearance(path*lo)<0: return None
+        if problem.clearance(path * lo) < 0:
+            return None
         for _ in range(6):
-            mid=.5*(lo+hi)
-            if problem.clearance(path*mid)>=0: lo=mid
-            else: hi=mid
-        scale*=lo
-    return replace(gait, a_f=float(gait.a_f*scale), a_o=float(gait.a_o*scale))
+            mid = 0.5 * (lo + hi)
+            if problem.clearance(path * mid) >= 0:
+                lo = mid
+            else:
+                hi = mid
+        scale *= lo
+    return replace(gait, a_f=float(gait.a_f * scale), a_o=float(gait.a_o * scale))

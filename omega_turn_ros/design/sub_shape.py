@@ -227,5 +227,5 @@ def grid(axes: tuple[ShapeAxis, ShapeAxis]) -> Array:
 
 
 def _amplitude(a: float, mean: float, phase: Array) -> tuple[Array, Array]:
-    """f = a (mean + sin(phase)) and its derivative [rad], shape of `phase` (eq:prescribe_amp)."""
+    """Return a (mean + sin(phase)) of eq:prescribe_amp and its derivative [rad], (...)."""
     return a * (mean + np.sin(phase)), a * np.cos(phase)

@@ -26,11 +26,13 @@ from omega_turn_ros.nodes.messages import heading_of, read_offsets
 from omega_turn_ros.nodes.parameters import NodeParameters
 from omega_turn_ros.nodes.qos import COMMAND, LATCHED, REQUEST, STATE, STATE_INPUT
 from omega_turn_ros.nodes.runner import run_node
+from omega_turn_ros.nodes.seldom import SeldomGroup
 from omega_turn_ros.nodes.time import StepTimer, nanoseconds_of
 from omega_turn_ros.robot import load_robot
 
 WAVES = ('forward', 'turning')
 REMAINING_EVERY = 10  # commands between two turn_remaining
+SELDOM = 0.1  # [s] between looks for service calls other than stop
 
 
 class GaitNode(Node):
@@ -90,8 +92,9 @@ class GaitNode(Node):
         self._phases = self.create_publisher(JointState, 'wave_phases', COMMAND)
         self._phase_writer = JointWriter(WAVES)
         self._remaining = self.create_publisher(Float64, 'turn_remaining', LATCHED)
-        self.create_service(Trigger, '~/stop', self._on_stop)
+        stop = self.create_service(Trigger, '~/stop', self._on_stop)
         self.create_service(Trigger, '~/reset', self._on_reset)
+        self._seldom = SeldomGroup(self, (stop,), round(SELDOM * self._settings['rate']))
 
     def _accept(self, values: Mapping[str, Any]) -> None:
         limit = make_controller(values, load_robot(values['robot'])).limits.position
@@ -120,6 +123,7 @@ class GaitNode(Node):
 
     def _on_timer(self) -> None:
         now = self.get_clock().now()
+        self._seldom.tick()
         self._read_requests()
         self._read_inputs()
         self._advance(self._time.step(now.nanoseconds), now.to_msg())
@@ -241,6 +245,7 @@ class GaitNode(Node):
         return response
 
     def _publish_health(self) -> None:
+        self._seldom.open()  # simulated time may stand still, and the ticks with it
         state, values = self._state, self._settings.values
         problems = []
         if state.mode is Mode.STOPPED:

@@ -331,7 +331,7 @@ class GaitController:
         velocity = (command - previous) / dt if dt > 0.0 else np.zeros_like(command)
         cycling = state.mode is Mode.CYCLING
         phase = self.gait.calibration.start_phase + (state.turned if cycling else 0.0)
-        tau_f, tau_t = phase - self.gait.gait.psi, phase
+        _, tau_f, _, tau_t = self.gait.gait.waves_at(phase)
         rate = state.phase_rate if cycling else 0.0
         return Output(command, velocity, tau_f, tau_t, rate), limited
 

@@ -37,9 +37,9 @@ def test_a_gait_keeps_its_limit_and_clear_of_itself_at_every_scale(name: str) ->
     entry = load_gait(name)
     phases = np.linspace(0.0, 2.0 * np.pi, 5000)
     path = entry.gait.angles(phases, ROBOT.n_yaw)
-    assert np.abs(path).max() <= entry.theta_max + 1e-4
+    assert np.abs(path).max() <= entry.theta_max + 1e-6
     for scale in (0.25, 0.5, 0.75, 0.9, 1.0):
-        assert self_clearance(CHAIN, ROBOT.module_width, scale * path).min() > -1e-4
+        assert self_clearance(CHAIN, ROBOT.module_width, scale * path).min() > -1e-5
 
 
 @pytest.mark.parametrize('name', gait_names())

@@ -108,15 +108,18 @@ def _run_turn(options: argparse.Namespace) -> int:
 
 def _run_design(options: argparse.Namespace) -> int:
     from omega_turn_lab.design import run_design
-    from omega_turn_ros.design.catalogue import CATALOGUE, Recipe
+    from omega_turn_ros.design.catalogue import CATALOGUE, Recipe, within_limits
+    from omega_turn_ros.robot import load_robot
 
+    robot = load_robot(options.robot)
     if options.all:
-        return run_design(options.robot, CATALOGUE, options.seed, options.out)
+        recipes = [within_limits(recipe, robot) for recipe in CATALOGUE]
+        return run_design(robot, recipes, options.seed, options.out)
     k_f, k_t, limit = options.k_f, options.k_t, options.theta_max_deg
     name = options.name or f'k{k_f:g}_{k_t:g}_{limit:g}deg_{options.method}'.replace('.', 'p')
     text = f'k_f = {k_f:g}, k_t = {k_t:g}, joint limit {limit:g} deg, {options.method}'
     recipe = Recipe(name, text, k_f, k_t, limit, options.method)
-    return run_design(options.robot, (recipe,), options.seed, options.out)
+    return run_design(robot, (recipe,), options.seed, options.out)
 
 
 if __name__ == '__main__':

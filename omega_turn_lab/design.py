@@ -12,16 +12,15 @@ from tqdm import tqdm
 from omega_turn_ros.design.catalogue import Recipe, design_recipe
 from omega_turn_ros.design.problem import Design
 from omega_turn_ros.gaits.library import LibraryGait, gait_to_mapping
-from omega_turn_ros.robot import load_robot
+from omega_turn_ros.robot import Robot
 
 
-def run_design(robot_name: str, recipes: Sequence[Recipe], seed: int, out: Path) -> int:
+def run_design(robot: Robot, recipes: Sequence[Recipe], seed: int, out: Path) -> int:
     """Write one file per recipe into `out`; return 0.
 
     Raises:
-        BadInputError: the robot or a recipe is out of range.
+        BadInputError: a recipe is out of the robot's range.
     """
-    robot = load_robot(robot_name)
     out.mkdir(parents=True, exist_ok=True)
     lines = []
     for recipe in tqdm(recipes, desc='designing', unit='gait'):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from omega_turn_ros.design.calibrate import make_library_gait
 from omega_turn_ros.design.direct import design_direct
@@ -53,6 +53,12 @@ CATALOGUE = (
         method='fast',
     ),
 )
+
+
+def within_limits(recipe: Recipe, robot: Robot) -> Recipe:
+    """Return the recipe with its joint limit lowered to the robot's own where that is tighter."""
+    own = math.degrees(robot.position_limit)
+    return recipe if recipe.theta_max_deg <= own else replace(recipe, theta_max_deg=own)
 
 
 def design_recipe(recipe: Recipe, robot: Robot, seed: int = 0) -> tuple[Design, LibraryGait]:

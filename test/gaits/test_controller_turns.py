@@ -82,7 +82,7 @@ def test_bending_that_turns_the_body_is_reckoned_with(
 
 def test_bending_is_reckoned_with_between_cycles_of_different_size(bending_rig: Rig) -> None:
     bending_rig.ask(3.0 * bending_rig.controller.gait.calibration.largest_angle)
-    bending_rig.run_until(lambda state: state.mode is Mode.CYCLING and state.turned > 3.0)
+    bending_rig.run_until(lambda state: state.mode is Mode.CYCLING and state.turned > 0.3)
     table, state = bending_rig.controller.gait.calibration, bending_rig.state
     rest = table.angle_of(state.scale) - table.heading_at(state.scale, state.turned)
     # rest of this cycle, unbent, and one and a half cycles more

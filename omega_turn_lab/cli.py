@@ -66,7 +66,7 @@ def _add_design(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--method',
         default='direct',
-        help='direct (CMA-ES), hierarchical (height functions), fast (Fourier, turn per second)',
+        help='direct (turn per cycle), speed (turn per second), fourier_1 or fourier_2 (richer)',
     )
     parser.add_argument('--name', default='', help='of the gait file; made of the rest if absent')
     parser.add_argument('--seed', type=int, default=0)

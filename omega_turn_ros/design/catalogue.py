@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 from omega_turn_ros.design.calibrate import make_library_gait
 from omega_turn_ros.design.direct import design_direct
-from omega_turn_ros.design.fast import design_fast
+from omega_turn_ros.design.fourier import design_fourier
 from omega_turn_ros.design.problem import Design, DesignProblem
 from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.gaits.library import LibraryGait
@@ -16,7 +17,9 @@ from omega_turn_ros.robot import Robot
 
 METHODS: dict[str, Callable[[DesignProblem, int], Design]] = {
     'direct': design_direct,
-    'fast': design_fast,
+    'speed': partial(design_direct, per_second=True),
+    'fourier_1': partial(design_fourier, harmonics=1),
+    'fourier_2': partial(design_fourier, harmonics=2),
 }
 
 
@@ -50,7 +53,7 @@ CATALOGUE = (
     Recipe(
         'omega_fast',
         'Omega turn with Fourier amplitudes: most turn per second at a given peak joint speed',
-        method='fast',
+        method='fourier_2',
     ),
 )
 

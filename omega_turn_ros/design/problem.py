@@ -165,7 +165,7 @@ class Design:
         gait: turning counter-clockwise, within every limit.
         angle: per cycle [rad].
         clearance: smallest gap of the body to itself [m].
-        method: 'hierarchical' or 'direct'.
+        method: 'direct', 'fourier' or 'hierarchical'.
         evaluations: cycles integrated on the way, all starts.
         starts: how many starting points.
         agreeing: how many of them ended within 1 % of the best.

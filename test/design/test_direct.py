@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from omega_turn_ros.design.direct import design_direct
-from omega_turn_ros.design.fast import design_fast
+from omega_turn_ros.design.fourier import design_fourier
 from omega_turn_ros.design.objective import turning_speed
 from omega_turn_ros.design.problem import Design, DesignProblem
 from omega_turn_ros.errors import BadInputError
@@ -76,7 +76,7 @@ def test_a_weight_on_area_gives_a_smaller_area_for_less_turn(design: Design) -> 
 
 def test_fourier_gaits_turn_faster_at_equal_peak_joint_speed_than_the_paper_s_family() -> None:
     paper = design_direct(PROBLEM, seed=1, starts=3, per_second=True)
-    richer = design_fast(PROBLEM, seed=1, starts=3, harmonics=1)
+    richer = design_fourier(PROBLEM, seed=1, starts=3, harmonics=1)
     speeds = [turning_speed(d.angle, PROBLEM.path(d.gait)) for d in (paper, richer)]
     assert speeds[1] > speeds[0]
 

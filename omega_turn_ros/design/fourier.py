@@ -26,7 +26,7 @@ SCREENED = 60  # random candidates per start
 FINE_STRIDE = 10
 
 
-def design_fast(
+def design_fourier(
     problem: DesignProblem, seed: int = 0, starts: int = 12, harmonics: int = 2
 ) -> Design:
     """Find the Fourier gait that turns most per second at equal peak joint speed.
@@ -52,7 +52,7 @@ def design_fast(
     coarse = cost_of(problem, family, _value)
     fine = cost_of(replace(problem, samples=FINE), family, _value, FINE_STRIDE)
     found = search(coarse, fine, candidates, starts, seed)
-    return finish(problem, gait_of(problem, found.best), found, starts, 'fast')
+    return finish(problem, gait_of(problem, found.best), found, starts, 'fourier')
 
 
 def _value(problem: DesignProblem, path: Array) -> float:

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import brentq
 
 from omega_turn_ros.errors import BadInputError
-from omega_turn_ros.gaits.two_wave import TwoWaveGait
+from omega_turn_ros.gaits.wave_gait import WaveGait
 from omega_turn_ros.mechanics.chain import PlanarChain
 from omega_turn_ros.mechanics.force_laws import CoulombFriction, ForceLaw
 from omega_turn_ros.mechanics.quasi_static import QuasiStatic
@@ -20,7 +21,9 @@ from omega_turn_ros.robot import Robot
 Array = NDArray[np.float64]
 
 SMALLEST_LIMIT = math.radians(1.0)
-FINE = 1440  # samples of a cycle where a limit is enforced for good
+FINE, FINEST = 1440, 20_000  # samples of a cycle in the last search, and where a limit is final
+NEAR = 0.02  # widths: gaps this close to the smallest are looked at again, between samples
+REFINEMENT = 4  # shapes looked at between two samples where the body nearly meets itself
 
 
 @dataclass(frozen=True)
@@ -43,7 +46,7 @@ class DesignProblem:
     k_f: float = 1.5
     k_t: float = 1.0
     law: ForceLaw = field(default_factory=CoulombFriction)
-    samples: int = 96
+    samples: int = 60
 
     def __post_init__(self) -> None:
         """Refuse bodies and limits that cannot turn."""
@@ -95,7 +98,7 @@ class DesignProblem:
         grid: Array = np.linspace(0.0, 2.0 * np.pi, self.samples + 1)
         return grid
 
-    def path(self, gait: TwoWaveGait, samples: int = FINE) -> Array:
+    def path(self, gait: WaveGait, samples: int = FINE) -> Array:
         """Closed path of a gait [rad], shape (samples + 1, N)."""
         return gait.angles(np.linspace(0.0, 2.0 * np.pi, samples + 1), self.chain.n_joints)
 
@@ -107,29 +110,51 @@ class DesignProblem:
         """Smallest gap of the body to itself along a path [m], negative where it overlaps."""
         return float(self_clearance(self.chain, self.width, path).min())
 
-    def fitted(self, gait: TwoWaveGait) -> TwoWaveGait:
+    def feasible_factor(self, path: Array, tolerance: float = 1e-4) -> float:
+        """Factor that brings a path to its limits.
+
+        To the joint limit, or to less where the body would meet itself on the way.
+
+        Args:
+            path: joint angles at any scale, not all zero [rad], shape (T, N).
+            tolerance: how far below the largest clear scale it may end, relative.
+        """
+        factor = self.theta_max / float(np.abs(path).max())
+        gaps = self_clearance(self.chain, self.width, factor * path)
+        if gaps.min() >= NEAR * self.width:
+            return factor
+        tight = _refined(path, gaps < gaps.min() + NEAR * self.width)
+        if self.clearance(factor * tight) >= 0.0:
+            return factor
+
+        def gap(scale: float) -> float:  # bounded, for the root finder
+            return min(self.clearance(scale * tight), self.width)
+
+        clear: float = brentq(gap, 0.0, factor, xtol=0.5 * tolerance * factor)
+        clear *= 1.0 - tolerance
+        while self.clearance(clear * path) < 0.0:  # a shape that is clear at a larger scale only
+            clear *= 0.99
+        return clear
+
+    def fitted(self, gait: WaveGait) -> WaveGait:
         """Scale both amplitudes so that the gait just keeps every limit on a fine grid.
 
-        Scaled to the joint limit, then down, if need be, to where head and tail clear.
+        Raises:
+            BadInputError: both amplitudes are zero.
         """
-        largest = float(np.abs(self.path(gait)[:-1]).max())
-        if not largest > 0.0:
-            raise BadInputError('gait amplitudes', (gait.a_f, gait.a_o), 'not both zero')
-        fitted = _scaled(gait, self.theta_max / largest)
-        if self.clearance(self.path(fitted)) >= 0.0:
-            return fitted
-        low, high = 0.0, 1.0  # a straight body is clear
-        for _ in range(40):
-            middle = 0.5 * (low + high)
-            if self.clearance(self.path(_scaled(fitted, middle))) >= 0.0:
-                low = middle
-            else:
-                high = middle
-        return _scaled(fitted, low)
+        path = self.path(gait, FINEST)
+        if not np.abs(path).max() > 0.0:
+            raise BadInputError('gait amplitudes', 0.0, 'not all zero')
+        return gait.scaled(self.feasible_factor(path, 1e-7))
 
 
-def _scaled(gait: TwoWaveGait, factor: float) -> TwoWaveGait:
-    return replace(gait, a_f=gait.a_f * factor, a_o=gait.a_o * factor)
+def _refined(path: Array, chosen: NDArray[np.bool_]) -> Array:
+    """Shapes of the chosen rows and between them and the next, where a gap may be smaller yet."""
+    rows = np.flatnonzero(chosen[:-1])
+    between = np.arange(REFINEMENT) / REFINEMENT
+    steps = path[rows + 1] - path[rows]
+    fine = path[rows, None, :] + between[:, None] * steps[:, None, :]
+    return np.concatenate([fine.reshape(-1, path.shape[1]), path[chosen]])
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,14 +165,14 @@ class Design:
         gait: turning counter-clockwise, within every limit.
         angle: per cycle [rad].
         clearance: smallest gap of the body to itself [m].
-        method: 'hierarchical' or 'direct'.
+        method: 'direct', 'fourier' or 'hierarchical'.
         evaluations: cycles integrated on the way, all starts.
         starts: how many starting points.
         agreeing: how many of them ended within 1 % of the best.
         reason: why the best start stopped.
     """
 
-    gait: TwoWaveGait
+    gait: WaveGait
     angle: float
     clearance: float
     method: str

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from omega_turn_ros.design.sub_shape import Plane, SubShape, grid
-from omega_turn_ros.gaits.two_wave import TwoWaveGait
+from omega_turn_ros.gaits.two_wave_gait import TwoWaveGait
 from omega_turn_ros.mechanics.shape_grid import GridFunction
 
 Array = NDArray[np.float64]

@@ -20,7 +20,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from omega_turn_ros.design.problem import DesignProblem
 from omega_turn_ros.errors import BadInputError
-from omega_turn_ros.gaits.two_wave import TwoWaveGait, two_wave_angles
+from omega_turn_ros.gaits.two_wave import two_wave_angles
+from omega_turn_ros.gaits.two_wave_gait import TwoWaveGait
 from omega_turn_ros.mechanics.height_function import ConnectionField
 from omega_turn_ros.mechanics.local_connection import local_connection
 from omega_turn_ros.mechanics.self_collision import self_clearance

@@ -66,7 +66,7 @@ class ConnectionField:
 
     @cached_property
     def height(self) -> Array:
-        """Height function h of each row: x, y [m/rad^2] and rotation [1/rad], shape (n_1, n_2, 3)."""
+        """Height function h of each row, x, y [m/rad^2], rotation [1/rad], (n_1, n_2, 3)."""
         by_first = self.axes[0].derivative(self.matrix[..., 1], axis=0)
         return by_first - self.axes[1].derivative(self.matrix[..., 0], axis=1)
 

@@ -1,9 +1,9 @@
 """Compiled force balance: the body velocity at which ground forces and torque add up to zero.
 
 Newton's method on the three residuals. Laws that depend on the direction of slip only are smoothed
-by epsilon, |v| -> sqrt(v^2 + epsilon^2). From a good guess the last epsilon works at once, unless a
-contact point sticks; then the body pivots on that point, which leaves one unknown. Where neither
-works epsilon is lowered in steps from one at which the law is nearly linear. Own derivation.
+by epsilon, |v| -> sqrt(v^2 + epsilon^2). From a good guess the last epsilon works at once, unless
+a contact point sticks; then the body pivots on it, which leaves one unknown. Where neither works
+epsilon is lowered in steps from one at which the law is nearly linear. Own derivation.
 Inside, all quantities are in units of the body's size and mean shape speed. One file, because the
 compile cache looks at the file of the outermost function only.
 """

@@ -44,7 +44,7 @@ class ShapeAxis:
     @classmethod
     def phase(cls, points: int) -> ShapeAxis:
         """Cyclic axis from 0 with so many points."""
-        return cls(np.arange(points) * (PERIOD / points), cyclic=True)
+        return cls(np.arange(points, dtype=float) * (PERIOD / points), cyclic=True)
 
     def derivative(self, table: ArrayLike, axis: int) -> Array:
         """Derivative of tabulated values by this variable, in the shape of the table.

@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import brentq
 
 from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.gaits.two_wave import TwoWaveGait
@@ -43,7 +44,7 @@ class DesignProblem:
     k_f: float = 1.5
     k_t: float = 1.0
     law: ForceLaw = field(default_factory=CoulombFriction)
-    samples: int = 96
+    samples: int = 72
 
     def __post_init__(self) -> None:
         """Refuse bodies and limits that cannot turn."""
@@ -107,29 +108,41 @@ class DesignProblem:
         """Smallest gap of the body to itself along a path [m], negative where it overlaps."""
         return float(self_clearance(self.chain, self.width, path).min())
 
+    def feasible_factor(self, path: Array, tolerance: float = 1e-4) -> float:
+        """Factor that brings a path to its limits.
+
+        To the joint limit, or to less where the body would meet itself on the way.
+
+        Args:
+            path: joint angles at any scale, not all zero [rad], shape (T, N).
+            tolerance: how far below the largest clear scale it may end, relative.
+        """
+        factor = self.theta_max / float(np.abs(path).max())
+        gaps = self_clearance(self.chain, self.width, factor * path)
+        if gaps.min() >= 0.0:
+            return factor
+        tight = path[gaps < 0.2 * self.width]
+
+        def gap(scale: float) -> float:  # bounded, for the root finder
+            return min(self.clearance(scale * tight), self.width)
+
+        clear: float = brentq(gap, 0.0, factor, xtol=0.5 * tolerance * factor)
+        clear *= 1.0 - tolerance
+        while self.clearance(clear * path) < 0.0:  # a shape that is clear at a larger scale only
+            clear *= 0.99
+        return clear
+
     def fitted(self, gait: TwoWaveGait) -> TwoWaveGait:
         """Scale both amplitudes so that the gait just keeps every limit on a fine grid.
 
-        Scaled to the joint limit, then down, if need be, to where head and tail clear.
+        Raises:
+            BadInputError: both amplitudes are zero.
         """
-        largest = float(np.abs(self.path(gait)[:-1]).max())
-        if not largest > 0.0:
+        path = self.path(gait)
+        if not np.abs(path).max() > 0.0:
             raise BadInputError('gait amplitudes', (gait.a_f, gait.a_o), 'not both zero')
-        fitted = _scaled(gait, self.theta_max / largest)
-        if self.clearance(self.path(fitted)) >= 0.0:
-            return fitted
-        low, high = 0.0, 1.0  # a straight body is clear
-        for _ in range(40):
-            middle = 0.5 * (low + high)
-            if self.clearance(self.path(_scaled(fitted, middle))) >= 0.0:
-                low = middle
-            else:
-                high = middle
-        return _scaled(fitted, low)
-
-
-def _scaled(gait: TwoWaveGait, factor: float) -> TwoWaveGait:
-    return replace(gait, a_f=gait.a_f * factor, a_o=gait.a_o * factor)
+        factor = self.feasible_factor(path, 1e-7)
+        return replace(gait, a_f=gait.a_f * factor, a_o=gait.a_o * factor)
 
 
 @dataclass(frozen=True, slots=True)

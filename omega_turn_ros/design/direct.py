@@ -1,0 +1,98 @@
+"""Direct search over all parameters of eq:prescribe_amp at once, by CMA-ES.
+
+Every candidate is scaled to the joint limit first, and further down where the body would meet
+itself, so the search runs on feasible gaits only and needs no penalty (own derivation).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from omega_turn_ros.design.problem import FINE, Design, DesignProblem
+from omega_turn_ros.design.search import SearchResult, search
+from omega_turn_ros.errors import BadInputError
+from omega_turn_ros.gaits.two_wave import TwoWaveGait
+from omega_turn_ros.mechanics.swept_area import swept_area
+
+Array = NDArray[np.float64]
+
+SCREENED = 20  # random candidates per start; the best become the starts
+FINE_STRIDE = 8  # the last search keeps limits on the fine grid, and integrates every so many
+
+
+def design_direct(
+    problem: DesignProblem, seed: int = 0, starts: int = 12, area_weight: float = 0.0
+) -> Design:
+    """Find the two-wave gait of largest turn per cycle.
+
+    Args:
+        problem: the body, its ground and its limits.
+        seed: equal seeds give equal gaits.
+        starts: how many local searches.
+        area_weight: turn given up for a smaller swept area [rad per BL^2].
+
+    Raises:
+        BadInputError: no start, a negative weight, or no gait of this family turns.
+    """
+    if starts < 1:
+        raise BadInputError('starts', starts, 'at least 1')
+    if not math.isfinite(area_weight) or area_weight < 0.0:
+        raise BadInputError('area_weight', area_weight, 'a finite weight >= 0 [rad per BL^2]')
+
+    rng = np.random.default_rng(seed)
+    candidates = rng.normal(size=(SCREENED * starts, 6))
+    candidates[:, 3:] = rng.uniform(-np.pi, np.pi, (SCREENED * starts, 3))
+    coarse = _cost_of(problem, area_weight)
+    fine = _cost_of(replace(problem, samples=FINE), area_weight, FINE_STRIDE)
+    found = search(coarse, fine, candidates, starts, seed)
+    return finish(problem, found, starts, 'direct')
+
+
+def _cost_of(
+    problem: DesignProblem, area_weight: float, stride: int = 1
+) -> Callable[[Array], float]:
+    """Cost with limits kept on all samples of the cycle, and motion integrated on each stride."""
+
+    def cost(x: Array) -> float:
+        path = gait_of(problem, x).angles(problem.phases, problem.chain.n_joints)
+        path = problem.feasible_factor(path) * path[::stride]
+        if area_weight == 0.0:
+            return -abs(problem.turn(path))
+        poses = problem.motion.pose_along(path)
+        area = swept_area(problem.chain, 0.0, path, poses)
+        return area_weight * area - abs(float(poses[-1, 2]))
+
+    return cost
+
+
+def gait_of(problem: DesignProblem, x: Array) -> TwoWaveGait:
+    """Gait of the parameters (a_f gamma, a_f, a_o, phi_f, phi_o, psi), at any scale."""
+    size = float(np.abs(x[:3]).max()) + 1e-12
+    mean, swing, turning = (float(v) / size for v in x[:3])
+    swing = math.copysign(max(abs(swing), 1e-6), swing)  # gamma stays finite
+    phi_f, phi_o, psi = (math.remainder(float(v), math.tau) for v in x[3:])
+    return TwoWaveGait(problem.k_f, problem.k_t, swing, mean / swing, phi_f, turning, phi_o, psi)
+
+
+def finish(problem: DesignProblem, found: SearchResult, starts: int, method: str) -> Design:
+    """Enforce the limits on a fine grid, turn counter-clockwise, and account for the search."""
+    gait = problem.fitted(gait_of(problem, found.best))
+    path = problem.path(gait)
+    angle = problem.turn(path)
+    if abs(angle) < 1e-6:
+        raise BadInputError('problem', f'{angle:.2g} rad per cycle', 'a family that can turn')
+    return Design(
+        gait if angle > 0.0 else gait.mirrored(),
+        abs(angle),
+        problem.clearance(path),
+        method,
+        found.evaluations,
+        starts,
+        found.agreeing,
+        found.reason,
+    )

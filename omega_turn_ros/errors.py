@@ -29,3 +29,16 @@ class ConvergenceError(OmegaTurnError, ArithmeticError):
 
 class SimulationError(OmegaTurnError, RuntimeError):
     """The physics engine is missing, closed, or left the realm of finite numbers."""
+
+
+class MissingPackageError(OmegaTurnError, ImportError):
+    """An optional package is not installed.
+
+    Args:
+        package: its name on PyPI.
+        extra: of this package, which brings it.
+    """
+
+    def __init__(self, package: str, extra: str) -> None:
+        self.package = package
+        super().__init__(f"{package} is not installed: pip install '{package}' (extra '{extra}')")

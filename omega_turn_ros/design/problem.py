@@ -44,7 +44,7 @@ class DesignProblem:
     k_f: float = 1.5
     k_t: float = 1.0
     law: ForceLaw = field(default_factory=CoulombFriction)
-    samples: int = 72
+    samples: int = 60
 
     def __post_init__(self) -> None:
         """Refuse bodies and limits that cannot turn."""

@@ -15,7 +15,7 @@ Cost = Callable[[Array], float]
 STEP = 0.4  # standard deviation at first, in every direction
 ROUND = 15  # generations between two halvings
 TOLERANCE, FINE_TOLERANCE = 1e-3, 1e-5  # spread of costs in a generation that has converged
-EVALUATIONS = 200  # at most, per parameter and start
+EVALUATIONS, FINE_EVALUATIONS = 90, 300  # at most, per parameter
 SAME = 0.01  # relative difference of two optima that count as one
 
 
@@ -51,7 +51,7 @@ def search(coarse: Cost, fine: Cost, candidates: Array, starts: int, seed: int) 
     values = np.array([coarse(x) for x in candidates])
     chosen = np.argsort(values, kind='stable')[:starts]
     runs = [
-        _strategy(candidates[index], STEP, TOLERANCE, seed * 1000 + k)
+        _strategy(candidates[index], STEP, TOLERANCE, EVALUATIONS, seed * 1000 + k)
         for k, index in enumerate(chosen)
     ]
     racing = runs
@@ -63,8 +63,8 @@ def search(coarse: Cost, fine: Cost, candidates: Array, starts: int, seed: int) 
     best = racing[0].result
     agreeing = sum(run.result.fbest <= best.fbest + SAME * abs(best.fbest) for run in runs)
     # The winner's spread tells how far the finer search has to look in each direction.
-    spread = np.maximum(best.stds, 1e-4)
-    last = _strategy(best.xbest, 1.0, FINE_TOLERANCE, seed * 1000 + 999, spread)
+    spread = np.maximum(3.0 * best.stds, 3e-3)
+    last = _strategy(best.xbest, 1.0, FINE_TOLERANCE, FINE_EVALUATIONS, seed * 1000 + 999, spread)
     _advance(last, fine)
     evaluations = len(candidates) + sum(run.result.evaluations for run in (*runs, last))
     reason = ', '.join(last.stop())
@@ -73,10 +73,15 @@ def search(coarse: Cost, fine: Cost, candidates: Array, starts: int, seed: int) 
 
 
 def _strategy(
-    start: Array, step: float, tolerance: float, seed: int, spread: Array | None = None
+    start: Array,
+    step: float,
+    tolerance: float,
+    evaluations: int,
+    seed: int,
+    spread: Array | None = None,
 ) -> cma.CMAEvolutionStrategy:
     options = {'seed': seed + 1, 'verbose': -9, 'tolfun': tolerance, 'tolflatfitness': 10}
-    options['maxfevals'] = EVALUATIONS * len(start)
+    options['maxfevals'] = evaluations * len(start)
     if spread is not None:
         options['CMA_stds'] = spread
     return cma.CMAEvolutionStrategy(start, step, options)

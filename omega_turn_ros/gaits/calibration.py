@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from bisect import bisect_left
 from dataclasses import dataclass
 from typing import Any
 
@@ -89,20 +91,23 @@ class Calibration:
         """Heading since the start of a cycle [rad] after `turned` of phase, 0..2 pi [rad]."""
         row, weight = self._bracket(abs(scale))
         columns = self.heading.shape[1] - 1
-        place = min(max(turned / (2.0 * np.pi), 0.0), 1.0) * columns
+        place = min(max(turned / math.tau, 0.0), 1.0) * columns
         j = min(int(place), columns - 1)
-        block = self.heading[row : row + 2, j : j + 2]
-        along = block[:, 0] + (place - j) * (block[:, 1] - block[:, 0])
-        return float(np.sign(scale) * (along[0] + weight * (along[1] - along[0])))
+        # Single items as floats: arrays of two would cost a control tick more than all this.
+        item = self.heading.item
+        low = item(row, j) + (place - j) * (item(row, j + 1) - item(row, j))
+        high = item(row + 1, j) + (place - j) * (item(row + 1, j + 1) - item(row + 1, j))
+        size: float = low + weight * (high - low)
+        return math.copysign(1.0, scale) * size if scale else 0.0
 
     def bend_heading_of(self, scale: float) -> float:
         """Heading change from rest to the start shape at a signed scale [rad]."""
         return float(np.sign(scale) * np.interp(abs(scale), self.scales, self.bend_heading))
 
     def _bracket(self, scale: float) -> tuple[int, float]:
-        row = int(np.clip(np.searchsorted(self.scales, scale) - 1, 0, self.scales.size - 2))
-        low, high = self.scales[row], self.scales[row + 1]
-        return row, float(np.clip((scale - low) / (high - low), 0.0, 1.0))
+        row = min(max(bisect_left(self.scales, scale) - 1, 0), self.scales.size - 2)
+        low, high = self.scales.item(row), self.scales.item(row + 1)
+        return row, min(max((scale - low) / (high - low), 0.0), 1.0)
 
     def to_mapping(self) -> dict[str, Any]:
         """Plain lists for a YAML file, angles rounded to 1e-6 rad."""

@@ -26,6 +26,7 @@ from omega_turn_ros.gaits.controller_state import (
 from omega_turn_ros.gaits.library import LibraryGait
 from omega_turn_ros.gaits.limits import JointLimits, limit_command
 from omega_turn_ros.gaits.move import move_between
+from omega_turn_ros.gaits.postures import Postures
 from omega_turn_ros.gaits.turn_plan import plan_turn
 from omega_turn_ros.robot import Robot
 
@@ -72,6 +73,7 @@ class GaitController:
         self.robot, self.gait, self.config, self.limits = robot, gait, config, limits
         self._unbend_heading = unbend_heading
         self._yaw = robot.yaw_indices
+        self._postures = Postures(gait.gait, self._yaw, robot.n_joints)
         # Without feedback the prediction closes exactly; what is left is rounding.
         self._tolerance = config.heading_tolerance if config.heading_feedback else 1e-3
         self._cycle_rate = 2.0 * math.pi / config.period
@@ -142,8 +144,14 @@ class GaitController:
         elif state.mode is Mode.CYCLING:
             state = replace(state, phase_rate=0.0)
         measured = inputs.heading if self.config.heading_feedback else None
-        state = replace(state, heading=state.heading.advanced(predicted, measured))
-        state, output = self._command(state, target, dt)
+        heading = state.heading.advanced(predicted, measured)
+        output, limited = self._command(state, target, dt)
+        state = replace(
+            state,
+            command=output.positions,
+            heading=heading,
+            limited=state.limited + limited,
+        )
         if running:
             state = self._next_motion(state, dt)
         return state, output
@@ -212,11 +220,9 @@ class GaitController:
 
     def _posture(self, state: ControllerState) -> Array:
         """Joint angles of the cycle at the state's phase, pitch joints straight."""
-        posture = np.zeros(self.robot.n_joints)
         offsets = (state.gate * state.offsets[0], state.gate * state.offsets[1])
         phase = self.gait.calibration.start_phase + state.turned
-        posture[self._yaw] = self.gait.gait.angles(phase, self._yaw.size, state.scale, offsets)
-        return posture
+        return self._postures.at(phase, state.scale, offsets)
 
     def _next_motion(self, state: ControllerState, dt: float) -> ControllerState:
         """Go from one motion to the next where one has ended."""
@@ -317,17 +323,17 @@ class GaitController:
 
     def _command(
         self, state: ControllerState, target: Array | None, dt: float
-    ) -> tuple[ControllerState, Output]:
+    ) -> tuple[Output, bool]:
+        """Return the target within the limits, and whether they changed it."""
         previous = self._known(state)
         wanted = previous if target is None else target
         command, limited = limit_command(previous, wanted, dt, self.limits)
         velocity = (command - previous) / dt if dt > 0.0 else np.zeros_like(command)
-        state = replace(state, command=command, limited=state.limited + limited)
         cycling = state.mode is Mode.CYCLING
         phase = self.gait.calibration.start_phase + (state.turned if cycling else 0.0)
         tau_f, tau_t = phase - self.gait.gait.psi, phase
         rate = state.phase_rate if cycling else 0.0
-        return state, Output(command, velocity, tau_f, tau_t, rate)
+        return Output(command, velocity, tau_f, tau_t, rate), limited
 
 
 def shortest_period(gait: LibraryGait, velocity_limit: float) -> float:

@@ -53,6 +53,9 @@ def limit_command(
         The command [rad], shape (n_joints,), and whether any limit changed it.
     """
     reach = min(limits.velocity * dt, limits.step)
+    # Within reach is the rule, and cheap to see; NaN compares false.
+    if np.abs(target - previous).max() <= reach and np.abs(target).max() <= limits.position:
+        return target, False
     known = np.where(np.isnan(target), previous, target)
     command = np.clip(known, previous - reach, previous + reach)
     np.clip(command, -limits.position, limits.position, out=command)

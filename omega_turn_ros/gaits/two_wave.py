@@ -41,12 +41,16 @@ def two_wave_angles(
         Yaw joint angles theta_1..theta_N [rad], shape (..., N).
     """
     position = 2.0 * np.pi * np.arange(1, n_joints + 1) / n_joints
-    forward = np.sin(np.asarray(phase_forward, float)[..., None] + k_forward * position)
-    turning = np.sin(np.asarray(phase_turning, float)[..., None] + k_turning * position)
-    return (
-        np.asarray(amplitude_forward, float)[..., None] * forward
-        + np.asarray(amplitude_turning, float)[..., None] * turning
-    )
+    forward = _wave(amplitude_forward, phase_forward, k_forward * position)
+    return forward + _wave(amplitude_turning, phase_turning, k_turning * position)
+
+
+def _wave(amplitude: ArrayLike, phase: ArrayLike, lag: NDArray[np.float64]) -> NDArray[np.float64]:
+    """A sin(phase + lag) by the addition theorem: sines of T phases and N lags, not of T N."""
+    size, angle = np.asarray(amplitude, float), np.asarray(phase, float)
+    sine, cosine = (size * np.sin(angle))[..., None], (size * np.cos(angle))[..., None]
+    result: NDArray[np.float64] = sine * np.cos(lag) + cosine * np.sin(lag)
+    return result
 
 
 def serpenoid(amplitude: ArrayLike, phase: ArrayLike, k: float, n: int) -> NDArray[np.float64]:

@@ -25,12 +25,15 @@ from omega_turn_ros.nodes.joint_message import JointReader, JointWriter
 from omega_turn_ros.nodes.messages import heading_of, read_offsets
 from omega_turn_ros.nodes.parameters import NodeParameters
 from omega_turn_ros.nodes.qos import COMMAND, LATCHED, REQUEST, STATE, STATE_INPUT
+from omega_turn_ros.nodes.raw_joint_states import RawStateReader
 from omega_turn_ros.nodes.runner import run_node
+from omega_turn_ros.nodes.seldom import SeldomGroup
 from omega_turn_ros.nodes.time import StepTimer, nanoseconds_of
 from omega_turn_ros.robot import load_robot
 
 WAVES = ('forward', 'turning')
 REMAINING_EVERY = 10  # commands between two turn_remaining
+SELDOM = 0.1  # [s] between looks for service calls other than stop
 
 
 class GaitNode(Node):
@@ -80,7 +83,9 @@ class GaitNode(Node):
         on_request = self._read_requests if self._lock_step else None
         state_qos = STATE if self._lock_step else STATE_INPUT
         self._turn_angle = Inbox(self, Float64, 'turn_angle', REQUEST, on_request)
-        self._joint_states = Inbox(self, JointState, 'joint_states', state_qos, on_question)
+        self._joint_states: Inbox[Any] = Inbox(
+            self, JointState, 'joint_states', state_qos, on_question, raw=True
+        )
         self._odom = Inbox(self, Odometry, 'odom', state_qos, on_state)
         self._amplitudes = Inbox(self, JointState, 'wave_amplitudes', state_qos, on_state)
         self._stamps = {'joint_states': -1, 'odom': -1, 'wave_amplitudes': -1}
@@ -90,8 +95,9 @@ class GaitNode(Node):
         self._phases = self.create_publisher(JointState, 'wave_phases', COMMAND)
         self._phase_writer = JointWriter(WAVES)
         self._remaining = self.create_publisher(Float64, 'turn_remaining', LATCHED)
-        self.create_service(Trigger, '~/stop', self._on_stop)
+        stop = self.create_service(Trigger, '~/stop', self._on_stop)
         self.create_service(Trigger, '~/reset', self._on_reset)
+        self._seldom = SeldomGroup(self, (stop,), round(SELDOM * self._settings['rate']))
 
     def _accept(self, values: Mapping[str, Any]) -> None:
         limit = make_controller(values, load_robot(values['robot'])).limits.position
@@ -108,7 +114,8 @@ class GaitNode(Node):
         if gait.robot != self._robot.name:
             text = f'gait {gait.name} is calibrated for robot {gait.robot}, not this one'
             self._health.warn('gait', f'{text}: predicted angles are off')
-        self._joint_reader = JointReader(self._robot.joint_names, values['ignore_unknown_joints'])
+        reader = JointReader(self._robot.joint_names, values['ignore_unknown_joints'])
+        self._joint_reader = RawStateReader(reader)
         self._wave_reader = JointReader(WAVES)
         for seen, timeout in (
             (self._states_seen, 'state_timeout'),
@@ -120,6 +127,7 @@ class GaitNode(Node):
 
     def _on_timer(self) -> None:
         now = self.get_clock().now()
+        self._seldom.tick()
         self._read_requests()
         self._read_inputs()
         self._advance(self._time.step(now.nanoseconds), now.to_msg())
@@ -163,14 +171,16 @@ class GaitNode(Node):
 
     def _read_inputs(self) -> None:
         positions, heading, offsets = self._inputs.positions, self._heading, self._inputs.offsets
-        for message in self._joint_states.drain():
+        for data in self._joint_states.drain():
             try:
-                positions = self._joint_reader.read(message, 'position')
+                reading = self._joint_reader.read(data)
             except BadInputError as error:
                 self._health.refuse('joint_states', str(error))
             else:
-                self._last_stamp = message.header.stamp
-                self._stamps['joint_states'] = nanoseconds_of(message.header.stamp)
+                positions = reading.positions
+                self._stamps['joint_states'] = reading.seconds * 10**9 + reading.nanoseconds
+                if self._lock_step:
+                    self._last_stamp = Time(sec=reading.seconds, nanosec=reading.nanoseconds)
                 self._states_seen.mark()
         for message in self._odom.drain():
             try:
@@ -241,6 +251,7 @@ class GaitNode(Node):
         return response
 
     def _publish_health(self) -> None:
+        self._seldom.open()  # simulated time may stand still, and the ticks with it
         state, values = self._state, self._settings.values
         problems = []
         if state.mode is Mode.STOPPED:

@@ -22,13 +22,16 @@ class JointReader:
     Args:
         names: joints (or waves) in the wanted order.
         ignore_unknown: let other names pass, unread.
+
+    Attributes:
+        order: place in the last message read of each name, shape (n_names,).
     """
 
     def __init__(self, names: tuple[str, ...], ignore_unknown: bool = False) -> None:
         self._names = names
         self._ignore_unknown = ignore_unknown
         self._seen: list[str] | None = None
-        self._order: NDArray[np.intp] = np.zeros(0, np.intp)
+        self.order: NDArray[np.intp] = np.zeros(0, np.intp)
 
     def read(self, message: JointState, field: str) -> Array:
         """Return one array of the message in the reader's order, shape (n_names,).
@@ -42,14 +45,14 @@ class JointReader:
         """
         names = message.name
         if names != self._seen:
-            self._order = self._find_order(names)
+            self.order = self._find_order(names)
             self._seen = list(names)
         data = getattr(message, field)
         if len(data) != len(names):
             raise BadInputError(
                 field, f'{len(data)} numbers', f'{len(names)} numbers, one per name'
             )
-        values: Array = np.array(data, float)[self._order]
+        values: Array = np.array(data, float)[self.order]
         if not np.isfinite(values).all():
             bad = int(np.flatnonzero(~np.isfinite(values))[0])
             name, value = self._names[bad], float(values[bad])

@@ -1,0 +1,54 @@
+"""One gait on one robot, a single phase at a time: what a control tick needs, without delay."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from omega_turn_ros.gaits.two_wave import TwoWaveGait
+
+Array = NDArray[np.float64]
+
+
+class Postures:
+    """The same angles as `TwoWaveGait.angles`, for scalars.
+
+    By the sum formula each wave is sin(tau) cos(2 pi k i/N) + cos(tau) sin(2 pi k i/N). The
+    factors of the joints never change, so a posture is one product of 4 numbers and a table.
+
+    Args:
+        gait: the waves.
+        yaw_indices: places of the yaw joints among all, shape (N,).
+        n_joints: number of all joints; the others stay straight.
+    """
+
+    def __init__(self, gait: TwoWaveGait, yaw_indices: NDArray[np.intp], n_joints: int) -> None:
+        self._gait = gait
+        n = yaw_indices.size
+        position = 2.0 * np.pi * np.arange(1, n + 1) / n
+        waves = (gait.k_f * position, gait.k_t * position)
+        self._table = np.zeros((4, n_joints))
+        self._table[:, yaw_indices] = [f(wave) for wave in waves for f in (np.cos, np.sin)]
+
+    def at(self, phase: float, scale: float, offsets: tuple[float, float]) -> Array:
+        """Joint angles [rad], shape (n_joints,).
+
+        Args:
+            phase: gait phase tau_t [rad].
+            scale: factor on both nominal amplitudes; -1 is the mirrored turn.
+            offsets: what compliance adds to (A_f, A_t) [rad].
+        """
+        gait = self._gait
+        tau = phase - gait.psi
+        forward = scale * gait.a_f * (gait.gamma + math.sin(tau + gait.phi_f)) + offsets[0]
+        turning = scale * gait.a_o * (1.0 + math.sin(phase + gait.phi_o)) + offsets[1]
+        weights = (
+            forward * math.sin(tau),
+            forward * math.cos(tau),
+            turning * math.sin(phase),
+            turning * math.cos(phase),
+        )
+        posture: Array = np.dot(weights, self._table)
+        return posture

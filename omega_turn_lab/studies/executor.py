@@ -74,7 +74,7 @@ class DaskExecutor:
                 client.submit(_run_same_code, task, code_fingerprint(task.code), pure=False): i
                 for i, task in enumerate(tasks)
             }
-            for future, result in as_completed(index, with_results=True):
+            for future, result in as_completed(index, loop=client.loop, with_results=True):
                 yield index[future], result
 
 
@@ -95,15 +95,23 @@ def _client(address: str) -> Any:
     return client
 
 
+def _run(task: Task) -> Result:
+    """Run a case; an error names it, and survives the way home from another process."""
+    try:
+        return task.run()
+    except OmegaTurnError as error:
+        raise OmegaTurnError(f'{task}: {error}') from error
+
+
 def _numbered(index: int, task: Task) -> tuple[int, Result]:
-    return index, task.run()
+    return index, _run(task)
 
 
 def _run_same_code(task: Task, fingerprint: str) -> Result:
     """Run a case on a worker whose code gives the numbers ours would give."""
     if code_fingerprint(task.code) != fingerprint:
         raise OmegaTurnError('a Dask worker runs other versions of this package or its libraries')
-    return task.run()
+    return _run(task)
 
 
 def compute(

@@ -22,9 +22,9 @@ from omega_turn_ros.mechanics.quasi_static import QuasiStatic
 
 NAME = 'granular'
 K_T = (0.0, 1.0, 1.5)
-RATIOS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0)  # F_perp / F_par
-DESIGN_RATIOS = (2.0, 4.0, 8.0)
-FINE_RATIOS = np.linspace(1.0, 8.0, 29)  # of the curves in the figure
+RATIOS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0)  # F_perp / F_par
+DESIGN_RATIOS = (3.0,)
+FINE_RATIOS = np.linspace(1.0, 6.0, 41)  # of the curves in the figure
 
 
 def _hard_ground(plan: Plan, k_t: float) -> DesignTask:

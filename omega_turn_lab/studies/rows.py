@@ -66,6 +66,7 @@ def row_of(
     quantity: str,
     unit: str,
     ours: tuple[float | None, float | None],
+    paper_quantity: str = '',
 ) -> Row:
     """Row of one quantity of a designed gait, with the paper's number where it gives one.
 
@@ -76,9 +77,11 @@ def row_of(
         quantity: see `Row`.
         unit: see `Row`.
         ours: by force balance and in PyBullet.
+        paper_quantity: the paper's quantity to hold it against, if it goes by another name.
     """
     params = params_of(task)
-    return Row(case, params, quantity, unit, *paper_figure(study, quantity, params), *ours)
+    paper = paper_figure(study, paper_quantity or quantity, params)
+    return Row(case, params, quantity, unit, *paper, *ours)
 
 
 def write_json(path: Path, study: str, rows: Sequence[Row], seed: int, seconds: float) -> None:

@@ -46,22 +46,41 @@ def best_row(study: str, outcome: Outcome, tasks: Sequence[DesignTask], case: st
     return row_of(study, case, best, 'best_k_t', '1', ours)
 
 
-def angle_series(study: str, outcome: Outcome, tasks: Sequence[DesignTask], label: str) -> Series:
-    """Angle over k_t of one family, for the figure."""
-    angles = [outcome.angles(task) for task in tasks]
-    played = [physics for _, physics in angles if physics is not None]
+def series_of(
+    study: str,
+    tasks: Sequence[DesignTask],
+    values: Sequence[tuple[float, float | None]],
+    quantity: str,
+    label: str,
+) -> Series:
+    """Curve over k_t of one family, for a figure.
+
+    Args:
+        study: name of the study.
+        tasks: the family.
+        values: of each, by force balance and in PyBullet.
+        quantity: the paper's.
+        label: in the legend.
+    """
+    played = [physics for _, physics in values if physics is not None]
     paper = []
     for task in tasks:
-        mean, deviation = paper_figure(study, 'angle', params_of(task))
+        mean, deviation = paper_figure(study, quantity, params_of(task))
         if mean is not None:
             paper.append((task.k_t, mean, deviation))
     return Series(
         label,
         [task.k_t for task in tasks],
-        [theory for theory, _ in angles],
+        [theory for theory, _ in values],
         played if len(played) == len(tasks) else None,
         paper,
     )
+
+
+def angle_series(study: str, outcome: Outcome, tasks: Sequence[DesignTask], label: str) -> Series:
+    """Angle over k_t of one family, for a figure."""
+    values = [outcome.angles(task) for task in tasks]
+    return series_of(study, tasks, values, 'angle', label)
 
 
 def draw_angles(path: Path, series: Sequence[Series]) -> None:

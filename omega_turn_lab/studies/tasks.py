@@ -36,7 +36,7 @@ PHYSICS_CODE = (*QUASI_STATIC_CODE, 'omega_turn_sim_bridge', 'omega_turn_lab.phy
 
 
 class Task(Protocol):
-    """One case: hashable, picklable, its `repr` tells all it depends on but the code."""
+    """One case: hashable and picklable; `repr` tells all it depends on but the code."""
 
     code: ClassVar[tuple[str, ...]]
 
@@ -66,6 +66,14 @@ class DesignTask:
     seed: int
     law: ForceLaw = field(default_factory=CoulombFriction)
     area_weight: float = 0.0
+
+    def __str__(self) -> str:
+        """Name the case."""
+        return (
+            f'design for {self.robot.name}, k_f {self.k_f:g}, k_t {self.k_t:g}, limit '
+            f'{self.theta_max_deg:g} deg, seed {self.seed}, {self.law}, area weight '
+            f'{self.area_weight:g}'
+        )
 
     @property
     def problem(self) -> DesignProblem:
@@ -107,6 +115,10 @@ class PhysicsTask:
     robot: Robot
     gait: TwoWaveGait
     period: float = 10.0
+
+    def __str__(self) -> str:
+        """Name the case."""
+        return f'PyBullet trial of {self.robot.name}, {self.gait}'
 
     def run(self) -> Result:
         """Return the angle per cycle [deg], swept areas [BL^2] and the motion itself."""

@@ -44,7 +44,14 @@ setup(
         ('share/' + PACKAGE + '/config/robots', glob('config/robots/*.yaml')),
     ],
     python_requires='>=3.10',
-    install_requires=['setuptools', 'numpy>=1.26', 'PyYAML>=6', 'scipy>=1.10', 'numba>=0.59'],
+    install_requires=[
+        'setuptools',
+        'numpy>=1.26',
+        'PyYAML>=6',
+        'scipy>=1.10',
+        'numba>=0.59',
+        'cma>=3.3',
+    ],
     extras_require={
         'ros': ['ros-jazzy-rclpy[fastrtps]', 'ros-jazzy-common-interfaces'],
         'sim': ['pybullet>=3.2.5'],

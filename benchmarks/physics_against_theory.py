@@ -7,10 +7,10 @@ import math
 from dataclasses import replace
 
 import numpy as np
+from starting_gaits import STARTING_GAITS
 
 from omega_turn_lab.physics_trial import play_cycle
-from omega_turn_ros.design.starting_gaits import STARTING_GAITS
-from omega_turn_ros.gaits.two_wave import TwoWaveGait
+from omega_turn_ros.gaits.two_wave_gait import TwoWaveGait
 from omega_turn_ros.mechanics.chain import PlanarChain
 from omega_turn_ros.mechanics.trajectory import heading_along
 from omega_turn_ros.robot import Robot, load_robot

@@ -32,7 +32,7 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(required=True, metavar='COMMAND')
     _add_demo(commands.add_parser('demo', help='turn a simulated robot, all nodes in one process'))
     _add_turn(commands.add_parser('turn', help='command nodes that already run'))
-    _add_calibrate(commands.add_parser('calibrate', help='rebuild config/gaits'))
+    _add_design(commands.add_parser('design', help='design gaits for a robot'))
     _add_reproduce(commands.add_parser('reproduce', help="redo the paper's tables and figures"))
     return parser
 
@@ -59,10 +59,21 @@ def _add_turn(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(run=_run_turn)
 
 
-def _add_calibrate(parser: argparse.ArgumentParser) -> None:
+def _add_design(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--robot', default='limbless16', help='name in config/robots, or a path')
+    parser.add_argument('--all', action='store_true', help='design the whole library')
+    parser.add_argument('--k-f', type=float, default=1.5, help='waves of the forward wave')
+    parser.add_argument('--k-t', type=float, default=1.0, help='waves of the turning wave')
+    parser.add_argument('--theta-max-deg', type=_angle, default=90.0, help='joint limit [deg]')
+    parser.add_argument(
+        '--method',
+        default='direct',
+        help='direct (CMA-ES), hierarchical (height functions), fast (Fourier, turn per second)',
+    )
+    parser.add_argument('--name', default='', help='of the gait file; made of the rest if absent')
+    parser.add_argument('--seed', type=int, default=0)
     parser.add_argument('--out', type=Path, default=Path('config/gaits'), help='folder to write')
-    parser.set_defaults(run=_run_calibrate)
+    parser.set_defaults(run=_run_design)
 
 
 def _add_reproduce(parser: argparse.ArgumentParser) -> None:
@@ -115,10 +126,17 @@ def _run_turn(options: argparse.Namespace) -> int:
     return run_turn(options.deg, options.namespace, options.domain_id, options.timeout)
 
 
-def _run_calibrate(options: argparse.Namespace) -> int:
-    from omega_turn_lab.calibrate import run_calibrate
+def _run_design(options: argparse.Namespace) -> int:
+    from omega_turn_lab.design import run_design
+    from omega_turn_ros.design.catalogue import CATALOGUE, Recipe
 
-    return run_calibrate(options.robot, options.out)
+    if options.all:
+        return run_design(options.robot, CATALOGUE, options.seed, options.out)
+    k_f, k_t, limit = options.k_f, options.k_t, options.theta_max_deg
+    name = options.name or f'k{k_f:g}_{k_t:g}_{limit:g}deg_{options.method}'.replace('.', 'p')
+    text = f'k_f = {k_f:g}, k_t = {k_t:g}, joint limit {limit:g} deg, {options.method}'
+    recipe = Recipe(name, text, k_f, k_t, limit, options.method)
+    return run_design(options.robot, (recipe,), options.seed, options.out)
 
 
 def _run_reproduce(options: argparse.Namespace) -> int:

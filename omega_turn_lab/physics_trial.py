@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from omega_turn_ros.design.calibrate import straightest_phase
 from omega_turn_ros.errors import BadInputError
-from omega_turn_ros.gaits.two_wave import TwoWaveGait
+from omega_turn_ros.gaits.wave_gait import WaveGait
 from omega_turn_ros.robot import Robot
 from omega_turn_sim_bridge.simulation import Simulation, SimulationConfig
 
@@ -42,7 +42,7 @@ class PhysicsTrial:
 
 def play_cycle(
     robot: Robot,
-    gait: TwoWaveGait,
+    gait: WaveGait,
     period: float = 10.0,
     config: SimulationConfig | None = None,
     samples: int = 100,

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from omega_turn_lab.studies.rows import Row
 from omega_turn_lab.studies.tasks import DesignTask, PhysicsTask, Result
-from omega_turn_ros.gaits.two_wave import TwoWaveGait
+from omega_turn_ros.gaits.library import KINDS
+from omega_turn_ros.gaits.wave_gait import WaveGait
 from omega_turn_ros.robot import Robot
 
 Array = NDArray[np.float64]
@@ -66,9 +67,10 @@ class Outcome:
     designed: dict[DesignTask, Result]
     played: dict[PhysicsTask, Result] = field(default_factory=dict)
 
-    def gait(self, task: DesignTask) -> TwoWaveGait:
+    def gait(self, task: DesignTask) -> WaveGait:
         """Return the designed gait."""
-        return TwoWaveGait(**self.designed[task]['gait'])
+        found = self.designed[task]
+        return KINDS[found['kind']].from_mapping(found['gait'])
 
     def physics(self, task: DesignTask) -> Result | None:
         """Return what its gait did in PyBullet."""

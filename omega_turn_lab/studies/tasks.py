@@ -6,16 +6,18 @@ A result is a plain JSON mapping, the same whether computed here, on a cluster o
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
 from omega_turn_lab.studies.areas import area_readings
 from omega_turn_ros.design.calibrate import straightest_phase
+from omega_turn_ros.design.catalogue import METHODS
 from omega_turn_ros.design.direct import design_direct
 from omega_turn_ros.design.problem import DesignProblem
-from omega_turn_ros.gaits.two_wave import TwoWaveGait
+from omega_turn_ros.gaits.library import KINDS
+from omega_turn_ros.gaits.wave_gait import WaveGait
 from omega_turn_ros.mechanics.chain import PlanarChain
 from omega_turn_ros.mechanics.force_laws import CoulombFriction, ForceLaw
 from omega_turn_ros.robot import Robot
@@ -28,6 +30,9 @@ QUASI_STATIC_CODE = (
     'omega_turn_ros.mechanics',
     'omega_turn_ros.design',
     'omega_turn_ros.gaits.two_wave',
+    'omega_turn_ros.gaits.wave_gait',
+    'omega_turn_ros.gaits.two_wave_gait',
+    'omega_turn_ros.gaits.fourier_gait',
     'omega_turn_ros.robot',
     'omega_turn_lab.studies.tasks',
     'omega_turn_lab.studies.areas',
@@ -55,7 +60,8 @@ class DesignTask:
         theta_max_deg: joint angle limit [deg].
         seed: of the search.
         law: of the ground.
-        area_weight: what a swept body length squared costs [rad].
+        area_weight: what a swept body length squared costs [rad]; of the direct method only.
+        method: of `omega_turn_ros.design.catalogue.METHODS`.
     """
 
     code: ClassVar[tuple[str, ...]] = QUASI_STATIC_CODE
@@ -66,11 +72,12 @@ class DesignTask:
     seed: int
     law: ForceLaw = field(default_factory=CoulombFriction)
     area_weight: float = 0.0
+    method: str = 'direct'
 
     def __str__(self) -> str:
         """Name the case."""
         return (
-            f'design for {self.robot.name}, k_f {self.k_f:g}, k_t {self.k_t:g}, limit '
+            f'{self.method} design for {self.robot.name}, k_f {self.k_f:g}, k_t {self.k_t:g}, limit '
             f'{self.theta_max_deg:g} deg, seed {self.seed}, {self.law}, area weight '
             f'{self.area_weight:g}'
         )
@@ -84,14 +91,18 @@ class DesignTask:
     def run(self) -> Result:
         """Return the gait's parameters, its angle per cycle [deg] and its swept areas [BL^2]."""
         problem = self.problem
-        design = design_direct(problem, self.seed, area_weight=self.area_weight)
+        if self.method == 'direct':
+            design = design_direct(problem, self.seed, area_weight=self.area_weight)
+        else:
+            design = METHODS[self.method](problem, self.seed)
         gait = design.gait
         start = straightest_phase(gait, self.robot.n_yaw)
         phases = start + np.linspace(0.0, 2.0 * np.pi, AREA_SAMPLES + 1)
         path = gait.angles(phases, self.robot.n_yaw)
         areas = area_readings(problem.chain, problem.width, path, problem.motion.pose_along(path))
         return {
-            'gait': asdict(gait),
+            'kind': next(kind for kind, cls in KINDS.items() if isinstance(gait, cls)),
+            'gait': gait.to_mapping(),
             'angle_deg': math.degrees(problem.turn(problem.path(gait, SAMPLES))),
             'areas': areas,
             'clearance': design.clearance,
@@ -113,7 +124,7 @@ class PhysicsTask:
 
     code: ClassVar[tuple[str, ...]] = PHYSICS_CODE
     robot: Robot
-    gait: TwoWaveGait
+    gait: WaveGait
     period: float = 10.0
 
     def __str__(self) -> str:

@@ -7,16 +7,17 @@ itself, so the search runs on feasible gaits only and needs no penalty (own deri
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
+from omega_turn_ros.design.objective import cost_of, finish, turning_speed
 from omega_turn_ros.design.problem import FINE, Design, DesignProblem
-from omega_turn_ros.design.search import SearchResult, search
+from omega_turn_ros.design.search import search
 from omega_turn_ros.errors import BadInputError
-from omega_turn_ros.gaits.two_wave import TwoWaveGait
+from omega_turn_ros.gaits.two_wave_gait import TwoWaveGait
 from omega_turn_ros.mechanics.swept_area import swept_area
 
 Array = NDArray[np.float64]
@@ -26,15 +27,20 @@ FINE_STRIDE = 10  # the last search keeps limits on the fine grid, and integrate
 
 
 def design_direct(
-    problem: DesignProblem, seed: int = 0, starts: int = 12, area_weight: float = 0.0
+    problem: DesignProblem,
+    seed: int = 0,
+    starts: int = 12,
+    area_weight: float = 0.0,
+    per_second: bool = False,
 ) -> Design:
-    """Find the two-wave gait of largest turn per cycle.
+    """Find the two-wave gait of largest turn per cycle, or one that trades turn for more.
 
     Args:
         problem: the body, its ground and its limits.
         seed: equal seeds give equal gaits.
         starts: how many local searches.
         area_weight: turn given up for a smaller swept area [rad per BL^2].
+        per_second: maximise `turning_speed` instead of the turn per cycle.
 
     Raises:
         BadInputError: no start, a negative weight, or no gait of this family turns.
@@ -44,30 +50,27 @@ def design_direct(
     if not math.isfinite(area_weight) or area_weight < 0.0:
         raise BadInputError('area_weight', area_weight, 'a finite weight >= 0 [rad per BL^2]')
 
+    if area_weight and per_second:
+        raise BadInputError('area_weight', area_weight, '0 where turning speed is maximised')
+    value = partial(_value, area_weight=area_weight, per_second=per_second)
     rng = np.random.default_rng(seed)
     candidates = rng.normal(size=(SCREENED * starts, 6))
     candidates[:, 3:] = rng.uniform(-np.pi, np.pi, (SCREENED * starts, 3))
-    coarse = _cost_of(problem, area_weight)
-    fine = _cost_of(replace(problem, samples=FINE), area_weight, FINE_STRIDE)
+    family = partial(gait_of, problem)
+    coarse = cost_of(problem, family, value)
+    fine = cost_of(replace(problem, samples=FINE), family, value, FINE_STRIDE)
     found = search(coarse, fine, candidates, starts, seed)
-    return finish(problem, found, starts, 'direct')
+    return finish(problem, gait_of(problem, found.best), found, starts, 'direct')
 
 
-def _cost_of(
-    problem: DesignProblem, area_weight: float, stride: int = 1
-) -> Callable[[Array], float]:
-    """Cost with limits kept on all samples of the cycle, and motion integrated on each stride."""
-
-    def cost(x: Array) -> float:
-        path = gait_of(problem, x).angles(problem.phases, problem.chain.n_joints)
-        path = problem.feasible_factor(path) * path[::stride]
-        if area_weight == 0.0:
-            return -abs(problem.turn(path))
-        poses = problem.motion.pose_along(path)
-        area = swept_area(problem.chain, 0.0, path, poses)
-        return area_weight * area - abs(float(poses[-1, 2]))
-
-    return cost
+def _value(problem: DesignProblem, path: Array, area_weight: float, per_second: bool) -> float:
+    if per_second:
+        return turning_speed(problem.turn(path), path)
+    if area_weight == 0.0:
+        return abs(problem.turn(path))
+    poses = problem.motion.pose_along(path)
+    area = swept_area(problem.chain, 0.0, path, poses)
+    return abs(float(poses[-1, 2])) - area_weight * area
 
 
 def gait_of(problem: DesignProblem, x: Array) -> TwoWaveGait:
@@ -77,22 +80,3 @@ def gait_of(problem: DesignProblem, x: Array) -> TwoWaveGait:
     swing = math.copysign(max(abs(swing), 1e-6), swing)  # gamma stays finite
     phi_f, phi_o, psi = (math.remainder(float(v), math.tau) for v in x[3:])
     return TwoWaveGait(problem.k_f, problem.k_t, swing, mean / swing, phi_f, turning, phi_o, psi)
-
-
-def finish(problem: DesignProblem, found: SearchResult, starts: int, method: str) -> Design:
-    """Enforce the limits on a fine grid, turn counter-clockwise, and account for the search."""
-    gait = problem.fitted(gait_of(problem, found.best))
-    path = problem.path(gait)
-    angle = problem.turn(path)
-    if abs(angle) < 1e-6:
-        raise BadInputError('problem', f'{angle:.2g} rad per cycle', 'a family that can turn')
-    return Design(
-        gait if angle > 0.0 else gait.mirrored(),
-        abs(angle),
-        problem.clearance(path),
-        method,
-        found.evaluations,
-        starts,
-        found.agreeing,
-        found.reason,
-    )

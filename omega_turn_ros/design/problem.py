@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from omega_turn_ros.errors import BadInputError
-from omega_turn_ros.gaits.two_wave import TwoWaveGait
+from omega_turn_ros.gaits.wave_gait import WaveGait
 from omega_turn_ros.mechanics.chain import PlanarChain
 from omega_turn_ros.mechanics.force_laws import CoulombFriction, ForceLaw
 from omega_turn_ros.mechanics.quasi_static import QuasiStatic
@@ -21,7 +21,9 @@ from omega_turn_ros.robot import Robot
 Array = NDArray[np.float64]
 
 SMALLEST_LIMIT = math.radians(1.0)
-FINE = 1440  # samples of a cycle where a limit is enforced for good
+FINE, FINEST = 1440, 20_000  # samples of a cycle in the last search, and where a limit is final
+NEAR = 0.02  # widths: gaps this close to the smallest are looked at again, between samples
+REFINEMENT = 4  # shapes looked at between two samples where the body nearly meets itself
 
 
 @dataclass(frozen=True)
@@ -96,7 +98,7 @@ class DesignProblem:
         grid: Array = np.linspace(0.0, 2.0 * np.pi, self.samples + 1)
         return grid
 
-    def path(self, gait: TwoWaveGait, samples: int = FINE) -> Array:
+    def path(self, gait: WaveGait, samples: int = FINE) -> Array:
         """Closed path of a gait [rad], shape (samples + 1, N)."""
         return gait.angles(np.linspace(0.0, 2.0 * np.pi, samples + 1), self.chain.n_joints)
 
@@ -119,9 +121,11 @@ class DesignProblem:
         """
         factor = self.theta_max / float(np.abs(path).max())
         gaps = self_clearance(self.chain, self.width, factor * path)
-        if gaps.min() >= 0.0:
+        if gaps.min() >= NEAR * self.width:
             return factor
-        tight = path[gaps < 0.2 * self.width]
+        tight = _refined(path, gaps < gaps.min() + NEAR * self.width)
+        if self.clearance(factor * tight) >= 0.0:
+            return factor
 
         def gap(scale: float) -> float:  # bounded, for the root finder
             return min(self.clearance(scale * tight), self.width)
@@ -132,17 +136,25 @@ class DesignProblem:
             clear *= 0.99
         return clear
 
-    def fitted(self, gait: TwoWaveGait) -> TwoWaveGait:
+    def fitted(self, gait: WaveGait) -> WaveGait:
         """Scale both amplitudes so that the gait just keeps every limit on a fine grid.
 
         Raises:
             BadInputError: both amplitudes are zero.
         """
-        path = self.path(gait)
+        path = self.path(gait, FINEST)
         if not np.abs(path).max() > 0.0:
-            raise BadInputError('gait amplitudes', (gait.a_f, gait.a_o), 'not both zero')
-        factor = self.feasible_factor(path, 1e-7)
-        return replace(gait, a_f=gait.a_f * factor, a_o=gait.a_o * factor)
+            raise BadInputError('gait amplitudes', 0.0, 'not all zero')
+        return gait.scaled(self.feasible_factor(path, 1e-7))
+
+
+def _refined(path: Array, chosen: NDArray[np.bool_]) -> Array:
+    """Shapes of the chosen rows and between them and the next, where a gap may be smaller yet."""
+    rows = np.flatnonzero(chosen[:-1])
+    between = np.arange(REFINEMENT) / REFINEMENT
+    steps = path[rows + 1] - path[rows]
+    fine = path[rows, None, :] + between[:, None] * steps[:, None, :]
+    return np.concatenate([fine.reshape(-1, path.shape[1]), path[chosen]])
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,7 +172,7 @@ class Design:
         reason: why the best start stopped.
     """
 
-    gait: TwoWaveGait
+    gait: WaveGait
     angle: float
     clearance: float
     method: str

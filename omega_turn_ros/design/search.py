@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import cma
 import numpy as np
@@ -80,7 +81,12 @@ def _strategy(
     seed: int,
     spread: Array | None = None,
 ) -> cma.CMAEvolutionStrategy:
-    options = {'seed': seed + 1, 'verbose': -9, 'tolfun': tolerance, 'tolflatfitness': 10}
+    options: dict[str, Any] = {
+        'seed': seed + 1,
+        'verbose': -9,
+        'tolfun': tolerance,
+        'tolflatfitness': 10,
+    }
     options['maxfevals'] = evaluations * len(start)
     if spread is not None:
         options['CMA_stds'] = spread

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -136,22 +137,22 @@ class GaitController:
             state = self._start(state, inputs.positions)
         state = self._take_offsets(state, inputs.offsets, dt)
         state, running = self._check_robot(state, inputs, dt)
-        target, predicted = state.command, 0.0
-        if running and state.mode is Mode.MOVING:
-            state, target, predicted = self._step_move(state, dt)
+        # One `replace` for all: copying the state is a good part of what a step costs.
+        changes: dict[str, Any] = {}
+        previous = target = self._known(state)
+        predicted = 0.0
+        if running and state.mode is Mode.MOVING and state.move is not None:
+            changes['move'], predicted = state.move.advanced(dt)
+            target = changes['move'].position
         elif running and state.mode is Mode.CYCLING:
-            state, target, predicted = self._step_cycle(state, dt)
+            changes, target, predicted = self._step_cycle(state, dt)
         elif state.mode is Mode.CYCLING:
-            state = replace(state, phase_rate=0.0)
+            changes['phase_rate'] = 0.0
         measured = inputs.heading if self.config.heading_feedback else None
-        heading = state.heading.advanced(predicted, measured)
-        output, limited = self._command(state, target, dt)
-        state = replace(
-            state,
-            command=output.positions,
-            heading=heading,
-            limited=state.limited + limited,
-        )
+        changes['heading'] = state.heading.advanced(predicted, measured)
+        command, limited = limit_command(previous, target, dt, self.limits)
+        state = replace(state, **changes, command=command, limited=state.limited + limited)
+        output = self._output(state, previous, dt)
         if running:
             state = self._next_motion(state, dt)
         return state, output
@@ -190,17 +191,10 @@ class GaitController:
             return replace(state, catching_up=None), True
         return replace(state, catching_up=waited), False
 
-    def _step_move(
-        self, state: ControllerState, dt: float
-    ) -> tuple[ControllerState, Array | None, float]:
-        if state.move is None:
-            return state, state.command, 0.0
-        move, heading_change = state.move.advanced(dt)
-        return replace(state, move=move), move.position, heading_change
-
     def _step_cycle(
         self, state: ControllerState, dt: float
-    ) -> tuple[ControllerState, Array, float]:
+    ) -> tuple[dict[str, Any], Array, float]:
+        """Return the state's changes, the wanted command and the predicted heading change."""
         left = 2.0 * math.pi - state.turned
         acceleration = self._cycle_rate / self.config.phase_ramp_time
         rate = min(state.phase_rate + acceleration * dt, self._cycle_rate)
@@ -215,14 +209,10 @@ class GaitController:
         predicted = table.heading_at(state.scale, turned) - table.heading_at(
             state.scale, state.turned
         )
-        state = replace(state, turned=turned, phase_rate=rate, gate=gate)
-        return state, self._posture(state), predicted * state.ratio
-
-    def _posture(self, state: ControllerState) -> Array:
-        """Joint angles of the cycle at the state's phase, pitch joints straight."""
-        offsets = (state.gate * state.offsets[0], state.gate * state.offsets[1])
-        phase = self.gait.calibration.start_phase + state.turned
-        return self._postures.at(phase, state.scale, offsets)
+        offsets = (gate * state.offsets[0], gate * state.offsets[1])
+        target = self._postures.at(table.start_phase + turned, state.scale, offsets)
+        changes = {'turned': turned, 'phase_rate': rate, 'gate': gate}
+        return changes, target, predicted * state.ratio
 
     def _next_motion(self, state: ControllerState, dt: float) -> ControllerState:
         """Go from one motion to the next where one has ended."""
@@ -279,8 +269,7 @@ class GaitController:
         self, state: ControllerState, scale: float, bend_now: float
     ) -> ControllerState:
         """Move along one line in shape space to the start shape at `scale`."""
-        shape = replace(state, scale=scale, turned=0.0, gate=0.0)
-        target = self._posture(shape)
+        target = self._postures.at(self.gait.calibration.start_phase, scale, (0.0, 0.0))
         bend = self.gait.calibration.bend_heading_of(scale) - bend_now
         command = self._known(state)
         if np.abs(target - command).max() < SAME_SHAPE:
@@ -321,19 +310,14 @@ class GaitController:
             raise BadInputError('command', None, 'joint states before any motion')
         return state.command
 
-    def _command(
-        self, state: ControllerState, target: Array | None, dt: float
-    ) -> tuple[Output, bool]:
-        """Return the target within the limits, and whether they changed it."""
-        previous = self._known(state)
-        wanted = previous if target is None else target
-        command, limited = limit_command(previous, wanted, dt, self.limits)
+    def _output(self, state: ControllerState, previous: Array, dt: float) -> Output:
+        command = self._known(state)
         velocity = (command - previous) / dt if dt > 0.0 else np.zeros_like(command)
         cycling = state.mode is Mode.CYCLING
         phase = self.gait.calibration.start_phase + (state.turned if cycling else 0.0)
-        tau_f, tau_t = phase - self.gait.gait.psi, phase
+        _, tau_f, _, tau_t = self.gait.gait.waves_at(phase)
         rate = state.phase_rate if cycling else 0.0
-        return Output(command, velocity, tau_f, tau_t, rate), limited
+        return Output(command, velocity, tau_f, tau_t, rate)
 
 
 def shortest_period(gait: LibraryGait, velocity_limit: float) -> float:

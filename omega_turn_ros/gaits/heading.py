@@ -42,7 +42,7 @@ class HeadingTracker:
         progress = self.progress + predicted
         unconfirmed = self.unconfirmed + predicted
         if measured is None:
-            return replace(self, progress=progress, unconfirmed=unconfirmed)
+            return HeadingTracker(progress, self.last, unconfirmed, self.jumps)
         if self.last is None:
             return replace(self, progress=progress, last=measured, unconfirmed=0.0)
         error = math.remainder(measured - self.last - unconfirmed, math.tau)

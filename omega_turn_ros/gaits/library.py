@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.gaits.calibration import Calibration, calibration_from_mapping
-from omega_turn_ros.gaits.two_wave import TwoWaveGait
+from omega_turn_ros.gaits.fourier_gait import FourierGait
+from omega_turn_ros.gaits.two_wave_gait import TwoWaveGait
+from omega_turn_ros.gaits.wave_gait import WaveGait
 from omega_turn_ros.resources import config_names, read_config
+
+KINDS: dict[str, type[TwoWaveGait] | type[FourierGait]] = {
+    'two_wave': TwoWaveGait,
+    'fourier': FourierGait,
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +36,7 @@ class LibraryGait:
     description: str
     robot: str
     theta_max: float
-    gait: TwoWaveGait
+    gait: WaveGait
     calibration: Calibration
 
 
@@ -49,21 +56,17 @@ def load_gait(name: str) -> LibraryGait:
     if set(data) != expected:
         odd = sorted(set(data) ^ expected)
         raise BadInputError(f'gait {name}', odd, f'exactly the fields {sorted(expected)}')
-    if data['kind'] != 'two_wave':
-        raise BadInputError('gait kind', data['kind'], "'two_wave'")
+    if data['kind'] not in KINDS:
+        raise BadInputError('gait kind', data['kind'], f'one of {sorted(KINDS)}')
     theta_max = data['theta_max']
     if not isinstance(theta_max, (int, float)) or not 0.0 < theta_max <= math.pi:
         raise BadInputError('gait theta_max', theta_max, 'an angle in 0..pi [rad]')
-    parameters = data['parameters']
-    fields = set(TwoWaveGait.__slots__)
-    if not isinstance(parameters, dict) or set(parameters) != fields:
-        raise BadInputError('gait parameters', parameters, f'exactly the fields {sorted(fields)}')
     return LibraryGait(
         str(data['name']),
         str(data['description']),
         str(data['robot']),
         float(theta_max),
-        TwoWaveGait(**parameters),
+        KINDS[data['kind']].from_mapping(data['parameters']),
         calibration_from_mapping(data['calibration']),
     )
 
@@ -73,9 +76,9 @@ def gait_to_mapping(entry: LibraryGait) -> dict[str, Any]:
     return {
         'name': entry.name,
         'description': entry.description,
-        'kind': 'two_wave',
+        'kind': next(kind for kind, cls in KINDS.items() if isinstance(entry.gait, cls)),
         'robot': entry.robot,
         'theta_max': round(entry.theta_max, 9),
-        'parameters': {k: round(v, 9) for k, v in asdict(entry.gait).items()},
+        'parameters': entry.gait.to_mapping(),
         'calibration': entry.calibration.to_mapping(),
     }

@@ -7,13 +7,13 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from omega_turn_ros.gaits.two_wave import TwoWaveGait
+from omega_turn_ros.gaits.wave_gait import WaveGait
 
 Array = NDArray[np.float64]
 
 
 class Postures:
-    """The same angles as `TwoWaveGait.angles`, for scalars.
+    """The same angles as `WaveGait.angles`, for scalars.
 
     By the sum formula each wave is sin(tau) cos(2 pi k i/N) + cos(tau) sin(2 pi k i/N). The
     factors of the joints never change, so a posture is one product of 4 numbers and a table.
@@ -24,7 +24,7 @@ class Postures:
         n_joints: number of all joints; the others stay straight.
     """
 
-    def __init__(self, gait: TwoWaveGait, yaw_indices: NDArray[np.intp], n_joints: int) -> None:
+    def __init__(self, gait: WaveGait, yaw_indices: NDArray[np.intp], n_joints: int) -> None:
         self._gait = gait
         n = yaw_indices.size
         position = 2.0 * np.pi * np.arange(1, n + 1) / n
@@ -40,15 +40,14 @@ class Postures:
             scale: factor on both nominal amplitudes; -1 is the mirrored turn.
             offsets: what compliance adds to (A_f, A_t) [rad].
         """
-        gait = self._gait
-        tau = phase - gait.psi
-        forward = scale * gait.a_f * (gait.gamma + math.sin(tau + gait.phi_f)) + offsets[0]
-        turning = scale * gait.a_o * (1.0 + math.sin(phase + gait.phi_o)) + offsets[1]
+        forward, tau_f, turning, tau_t = self._gait.waves_at(phase)
+        forward = scale * forward + offsets[0]
+        turning = scale * turning + offsets[1]
         weights = (
-            forward * math.sin(tau),
-            forward * math.cos(tau),
-            turning * math.sin(phase),
-            turning * math.cos(phase),
+            forward * math.sin(tau_f),
+            forward * math.cos(tau_f),
+            turning * math.sin(tau_t),
+            turning * math.cos(tau_t),
         )
         posture: Array = np.dot(weights, self._table)
         return posture

@@ -15,7 +15,7 @@ import yaml
 
 from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.gaits.library import LibraryGait, gait_names, gait_to_mapping, load_gait
-from omega_turn_ros.gaits.two_wave import TwoWaveGait
+from omega_turn_ros.gaits.two_wave_gait import TwoWaveGait
 from omega_turn_ros.robot import load_robot
 
 Mapping = dict[str, Any]

@@ -12,12 +12,12 @@ from hypothesis import strategies as st
 
 from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.gaits.two_wave import (
-    TwoWaveGait,
     geometric_turn,
     offset_turn,
     serpenoid,
     two_wave_angles,
 )
+from omega_turn_ros.gaits.two_wave_gait import TwoWaveGait
 
 SEEDED = settings(derandomize=True, deadline=None, max_examples=100)
 ROUNDING = 1e-12  # [rad] of a handful of sines of arguments below 60 rad

@@ -11,13 +11,13 @@ pytest.importorskip('pybullet')
 
 from omega_turn_lab.physics_trial import PhysicsTrial, play_cycle
 from omega_turn_ros.design.calibrate import straightest_phase
-from omega_turn_ros.design.starting_gaits import STARTING_GAITS
 from omega_turn_ros.errors import BadInputError
+from omega_turn_ros.gaits.library import load_gait
 from omega_turn_ros.mechanics.chain import PlanarChain
 from omega_turn_ros.mechanics.quasi_static import QuasiStatic
 from omega_turn_ros.robot import Robot, load_robot
 
-OMEGA = STARTING_GAITS['omega'][2].mirrored()
+OMEGA = load_gait('omega').gait
 
 
 @pytest.fixture(scope='module')

@@ -17,7 +17,7 @@ from omega_turn_lab.body_shapes import body_polygons, module_polygons, nice_step
 from omega_turn_lab.pictures import draw_turn
 from omega_turn_lab.run_record import RunRecord
 from omega_turn_ros.errors import BadInputError
-from omega_turn_ros.gaits.two_wave import TwoWaveGait
+from omega_turn_ros.gaits.two_wave_gait import TwoWaveGait
 from omega_turn_ros.mechanics.chain import PlanarChain
 from omega_turn_ros.mechanics.trajectory import pose_along
 from omega_turn_ros.robot import Robot, load_robot

@@ -14,8 +14,9 @@ from omega_turn_lab.studies.run import ROBOT, available, load_study
 from omega_turn_lab.studies.study import Outcome, Plan
 from omega_turn_lab.studies.tasks import DesignTask, PhysicsTask, Result
 from omega_turn_ros.design.problem import Design, DesignProblem
-from omega_turn_ros.design.starting_gaits import STARTING_GAITS
-from omega_turn_ros.gaits.two_wave import TwoWaveGait
+from omega_turn_ros.gaits.library import load_gait
+from omega_turn_ros.gaits.two_wave_gait import TwoWaveGait
+from omega_turn_ros.gaits.wave_gait import WaveGait
 from omega_turn_ros.robot import load_robot
 
 PAPER = [name for name in available() if name not in ('height', 'beyond')]
@@ -23,8 +24,9 @@ PAPER = [name for name in available() if name not in ('height', 'beyond')]
 
 def unsearched(problem: DesignProblem, seed: int = 0, area_weight: float = 0.0) -> Design:
     """A shipped gait of the nearest k_t, fitted to the problem."""
-    shipped = [STARTING_GAITS[name][2] for name in ('offset', 'omega', 'geometric')]
+    shipped = [load_gait(name).gait for name in ('offset', 'omega', 'geometric')]
     nearest = min(shipped, key=lambda gait: abs(gait.k_t - problem.k_t))
+    assert isinstance(nearest, TwoWaveGait)
     shifted = replace(
         nearest, k_f=problem.k_f, k_t=problem.k_t, psi=nearest.psi + 0.05 * area_weight + seed
     )
@@ -34,7 +36,7 @@ def unsearched(problem: DesignProblem, seed: int = 0, area_weight: float = 0.0) 
     return Design(gait, abs(angle), 0.0, 'none', 1, 1, 1, 'not searched')
 
 
-def played_by_theory(task: DesignTask, gait: TwoWaveGait) -> Result:
+def played_by_theory(task: DesignTask, gait: WaveGait) -> Result:
     """What a trial returns, had the physics been the force balance of half the gait."""
     fraction = np.linspace(0.0, 1.0, 51)
     path = gait.angles(2.0 * np.pi * fraction, task.robot.n_yaw, 0.5)
@@ -56,10 +58,11 @@ def outcome() -> Outcome:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(tasks_module, 'design_direct', unsearched)
         designed = {task: task.run() for study in studies for task in study.designs(plan)}
+    found = Outcome(plan, designed)
     played = {}
     for study in studies:
         for task in study.designs(plan) if study.played else ():
-            gait = TwoWaveGait(**designed[task]['gait'])
+            gait = found.gait(task)
             played[PhysicsTask(task.robot, gait)] = played_by_theory(task, gait)
     return Outcome(plan, designed, played)
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from omega_turn_ros.gaits.two_wave import TwoWaveGait
+from omega_turn_ros.gaits.two_wave_gait import TwoWaveGait
 
 STARTING_GAITS: dict[str, tuple[str, float, TwoWaveGait]] = {
     'omega': (

@@ -1,0 +1,53 @@
+"""`omega_turn design`: design gaits for a robot, calibrate them, write them as YAML."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+import yaml
+from tqdm import tqdm
+
+from omega_turn_ros.design.catalogue import Recipe, design_recipe
+from omega_turn_ros.design.problem import Design
+from omega_turn_ros.gaits.library import LibraryGait, gait_to_mapping
+from omega_turn_ros.robot import load_robot
+
+
+def run_design(robot_name: str, recipes: Sequence[Recipe], seed: int, out: Path) -> int:
+    """Write one file per recipe into `out`; return 0.
+
+    Raises:
+        BadInputError: the robot or a recipe is out of range.
+    """
+    robot = load_robot(robot_name)
+    out.mkdir(parents=True, exist_ok=True)
+    lines = []
+    for recipe in tqdm(recipes, desc='designing', unit='gait'):
+        design, entry = design_recipe(recipe, robot, seed)
+        text = yaml.safe_dump(
+            gait_to_mapping(entry), sort_keys=False, default_flow_style=None, width=96
+        )
+        path = out / f'{recipe.name}.yaml'
+        path.write_text(text)
+        lines.append(_account(design, entry, path))
+    print('\n'.join(lines))
+    return 0
+
+
+def _account(design: Design, entry: LibraryGait, path: Path) -> str:
+    parameters = ', '.join(f'{k} {_short(v)}' for k, v in entry.gait.to_mapping().items())
+    return (
+        f'{entry.name}: {math.degrees(design.angle):.1f} deg per cycle, largest joint angle '
+        f'{math.degrees(entry.theta_max):.1f} deg, clears itself by {1e3 * design.clearance:.1f} '
+        f'mm\n  {parameters}\n  {design.method}: {design.agreeing} of {design.starts} starts '
+        f'within 1 % of the best, {design.evaluations} cycles integrated, stopped by '
+        f'{design.reason}\n  written to {path}'
+    )
+
+
+def _short(value: float | list[float]) -> str:
+    if isinstance(value, list):
+        return '[' + ' '.join(f'{v:.3f}' for v in value) + ']'
+    return f'{value:.4g}'

@@ -77,9 +77,9 @@ class DesignTask:
     def __str__(self) -> str:
         """Name the case."""
         return (
-            f'{self.method} design for {self.robot.name}, k_f {self.k_f:g}, k_t {self.k_t:g}, limit '
-            f'{self.theta_max_deg:g} deg, seed {self.seed}, {self.law}, area weight '
-            f'{self.area_weight:g}'
+            f'{self.method} design for {self.robot.name}, k_f {self.k_f:g}, k_t {self.k_t:g}, '
+            f'limit {self.theta_max_deg:g} deg, seed {self.seed}, {self.law}, '
+            f'area weight {self.area_weight:g}'
         )
 
     @property

@@ -37,8 +37,12 @@ class MissingPackageError(OmegaTurnError, ImportError):
     Args:
         package: its name on PyPI.
         extra: of this package, which brings it.
+        otherwise: how to do without.
     """
 
-    def __init__(self, package: str, extra: str) -> None:
+    def __init__(self, package: str, extra: str, otherwise: str = '') -> None:
         self.package = package
-        super().__init__(f"{package} is not installed: pip install '{package}' (extra '{extra}')")
+        hint = f"pip install '{package}' (it comes with the extra '{extra}')"
+        super().__init__(
+            f'{package} is not installed: ' + ', or '.join(filter(None, (hint, otherwise)))
+        )

@@ -20,6 +20,8 @@ from omega_turn_ros.robot import load_robot
 
 ROBOT = 'limbless16'  # the paper's
 CACHE = '.cache'
+PACKAGE = 'omega_turn_lab.studies'
+ELSEWHERE = {'height': 'height_study'}  # module of a study, where its own name is taken
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,16 +53,15 @@ def load_study(name: str) -> Study:
     Raises:
         BadInputError: no such study.
     """
-    module = f'omega_turn_lab.studies.{name}'
-    if name not in NAMES or find_spec(module) is None:
+    if name not in available():
         raise BadInputError('study', name, f'one of {available()} or all')
-    study: Study = import_module(module).STUDY
+    study: Study = import_module(f'{PACKAGE}.{ELSEWHERE.get(name, name)}').STUDY
     return study
 
 
 def available() -> list[str]:
     """Names of the studies, in the paper's order."""
-    return [name for name in NAMES if find_spec(f'omega_turn_lab.studies.{name}') is not None]
+    return [name for name in NAMES if find_spec(f'{PACKAGE}.{name}') is not None]
 
 
 def run_reproduce(options: ReproduceOptions) -> int:
@@ -110,7 +111,7 @@ def _checked(options: ReproduceOptions) -> Executor:
     if options.seed < 0:
         raise BadInputError('seed', options.seed, 'an integer >= 0')
     if options.pybullet and find_spec('pybullet') is None:
-        raise MissingPackageError('pybullet', 'sim')
+        raise MissingPackageError('pybullet', 'sim', 'go without: --no-pybullet')
     try:
         options.out.mkdir(parents=True, exist_ok=True)
     except OSError as error:

@@ -9,14 +9,12 @@ from dataclasses import replace
 import numpy as np
 from starting_gaits import STARTING_GAITS
 
-from omega_turn_ros.design.calibrate import straightest_phase
+from omega_turn_lab.physics_trial import play_cycle
 from omega_turn_ros.gaits.two_wave_gait import TwoWaveGait
 from omega_turn_ros.mechanics.chain import PlanarChain
 from omega_turn_ros.mechanics.trajectory import heading_along
 from omega_turn_ros.robot import Robot, load_robot
-from omega_turn_sim_bridge.simulation import Simulation, SimulationConfig
-
-READING = 0.01  # [s]
+from omega_turn_sim_bridge.simulation import SimulationConfig
 
 
 def quasi_static_deg(robot: Robot, gait: TwoWaveGait) -> float:
@@ -25,26 +23,7 @@ def quasi_static_deg(robot: Robot, gait: TwoWaveGait) -> float:
 
 
 def physics_deg(robot: Robot, gait: TwoWaveGait, period: float, config: SimulationConfig) -> float:
-    """Bend to the start shape, play one cycle, wait; the heading change between equal shapes."""
-    start = straightest_phase(gait, robot.n_yaw)
-    steps = round(READING / config.time_step)
-    with Simulation(robot, config) as simulation:
-
-        def play(phase: float, scale: float) -> None:
-            posture = np.zeros(robot.n_joints)
-            posture[robot.yaw_indices] = gait.angles(phase, robot.n_yaw, scale)
-            simulation.command(posture)
-            simulation.step(steps)
-
-        for k in range(200):
-            play(start, min(1.0, k / 150))
-        before = simulation.observe().pose[2]
-        readings = round(period / READING)
-        for k in range(readings):
-            play(start + 2.0 * math.pi * (k + 1) / readings, 1.0)
-        for _ in range(100):
-            play(start, 1.0)
-        return math.degrees(simulation.observe().pose[2] - before)
+    return math.degrees(play_cycle(robot, gait, period, config).angle)
 
 
 def main() -> None:

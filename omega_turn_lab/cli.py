@@ -6,6 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
+from omega_turn_lab.studies import NAMES as STUDIES
 from omega_turn_ros import __version__
 from omega_turn_ros.errors import OmegaTurnError
 
@@ -32,6 +33,7 @@ def _parser() -> argparse.ArgumentParser:
     _add_demo(commands.add_parser('demo', help='turn a simulated robot, all nodes in one process'))
     _add_turn(commands.add_parser('turn', help='command nodes that already run'))
     _add_design(commands.add_parser('design', help='design gaits for a robot'))
+    _add_reproduce(commands.add_parser('reproduce', help="redo the paper's tables and figures"))
     return parser
 
 
@@ -72,6 +74,24 @@ def _add_design(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--seed', type=int, default=0)
     parser.add_argument('--out', type=Path, default=Path('config/gaits'), help='folder to write')
     parser.set_defaults(run=_run_design)
+
+
+def _add_reproduce(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        'name', choices=(*STUDIES, 'all'), metavar='NAME', help=f'{", ".join(STUDIES)} or all'
+    )
+    parser.add_argument('--out', type=Path, default=Path('out'), help='folder for the files')
+    parser.add_argument('--seed', type=int, default=0, help='of every search')
+    parser.add_argument('--jobs', type=int, default=-1, help='processes; -1: one per core')
+    parser.add_argument('--dask', metavar='ADDRESS', help='use the workers of this scheduler')
+    parser.add_argument(
+        '--pybullet',
+        action=argparse.BooleanOptionalAction,
+        default=True,
+        help='play the gaits in PyBullet too',
+    )
+    parser.add_argument('--fresh', action='store_true', help='compute finished cases again')
+    parser.set_defaults(run=_run_reproduce)
 
 
 def _angle(text: str) -> float:
@@ -120,6 +140,22 @@ def _run_design(options: argparse.Namespace) -> int:
     text = f'k_f = {k_f:g}, k_t = {k_t:g}, joint limit {limit:g} deg, {options.method}'
     recipe = Recipe(name, text, k_f, k_t, limit, options.method)
     return run_design(robot, (recipe,), options.seed, options.out)
+
+
+def _run_reproduce(options: argparse.Namespace) -> int:
+    from omega_turn_lab.studies.run import ReproduceOptions, run_reproduce
+
+    return run_reproduce(
+        ReproduceOptions(
+            name=options.name,
+            out=options.out,
+            seed=options.seed,
+            jobs=options.jobs,
+            dask=options.dask,
+            pybullet=options.pybullet,
+            fresh=options.fresh,
+        )
+    )
 
 
 if __name__ == '__main__':

@@ -29,3 +29,20 @@ class ConvergenceError(OmegaTurnError, ArithmeticError):
 
 class SimulationError(OmegaTurnError, RuntimeError):
     """The physics engine is missing, closed, or left the realm of finite numbers."""
+
+
+class MissingPackageError(OmegaTurnError, ImportError):
+    """An optional package is not installed.
+
+    Args:
+        package: its name on PyPI.
+        extra: of this package, which brings it.
+        otherwise: how to do without.
+    """
+
+    def __init__(self, package: str, extra: str, otherwise: str = '') -> None:
+        self.package = package
+        hint = f"pip install '{package}' (it comes with the extra '{extra}')"
+        super().__init__(
+            f'{package} is not installed: ' + ', or '.join(filter(None, (hint, otherwise)))
+        )

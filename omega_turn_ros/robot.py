@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -90,6 +90,24 @@ class Robot:
     def weight(self) -> float:
         """Total weight on level ground [N]."""
         return float(self.body_masses.sum()) * STANDARD_GRAVITY
+
+    def with_yaw_joints(self, count: int) -> Robot:
+        """Return the front of this robot, cut off before its yaw joint number `count` + 1.
+
+        Raises:
+            BadInputError: fewer than 2, or more than the robot has.
+        """
+        if not 2 <= count <= self.n_yaw:
+            raise BadInputError('yaw joints', count, f'2..{self.n_yaw}, those of {self.name}')
+        if count == self.n_yaw:
+            return self
+        cut = int(self.yaw_indices[count])
+        return replace(
+            self,
+            name=f'{self.name}_{count}_yaw',
+            joint_names=self.joint_names[:cut],
+            joint_axes=self.joint_axes[:cut],
+        )
 
 
 STANDARD_GRAVITY = 9.81  # [m/s^2], the value the simulator uses too

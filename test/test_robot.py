@@ -57,6 +57,18 @@ def test_lengths_and_masses_add_up(robot: Robot) -> None:
     assert robot.body_masses[1:] == pytest.approx([robot.module_mass] * robot.n_joints)
 
 
+def test_a_shorter_robot_is_the_front_of_the_long_one(robot: Robot) -> None:
+    short = robot.with_yaw_joints(6)
+    assert (short.n_yaw, short.n_joints) == (6, 12)
+    assert short.joint_names == robot.joint_names[:12]
+    np.testing.assert_allclose(short.planar_link_lengths, robot.planar_link_lengths[:7])
+    assert short.module_mass == robot.module_mass and short.name != robot.name
+    assert robot.with_yaw_joints(8) is robot
+    for count in (1, 9):
+        with pytest.raises(BadInputError, match='yaw joints'):
+            robot.with_yaw_joints(count)
+
+
 @pytest.mark.parametrize(
     ('axes', 'lengths'),
     [

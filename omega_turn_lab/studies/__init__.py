@@ -1,0 +1,14 @@
+"""One study per table or figure of the paper: run it, print ours beside the paper's, draw it."""
+
+from __future__ import annotations
+
+NAMES = (
+    'flat',
+    'evolution',
+    'amplitude',
+    'frequency',
+    'joints',
+    'granular',
+    'height',
+    'beyond',
+)

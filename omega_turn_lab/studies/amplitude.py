@@ -1,0 +1,47 @@
+"""Angle over k_t for three joint angle limits (Sec. IV.E)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from omega_turn_lab.studies.rows import Row, row_of
+from omega_turn_lab.studies.study import Outcome, Plan, Study, k_grid
+from omega_turn_lab.studies.sweeps import angle_rows, angle_series, case_name, draw_angles
+from omega_turn_lab.studies.tasks import DesignTask
+
+NAME = 'amplitude'
+LIMITS_DEG = (60.0, 75.0, 90.0)
+
+
+def _family(plan: Plan, limit_deg: float) -> list[DesignTask]:
+    return [plan.design(k_t, theta_max_deg=limit_deg) for k_t in k_grid(1.5)]
+
+
+def _designs(plan: Plan) -> list[DesignTask]:
+    return [task for limit in LIMITS_DEG for task in _family(plan, limit)]
+
+
+def _rows(outcome: Outcome) -> list[Row]:
+    tasks = _designs(outcome.plan)
+    rows = angle_rows(NAME, outcome, tasks, 'limit {theta_max_deg:g}°')
+    smallest, largest = (_family(outcome.plan, limit) for limit in (LIMITS_DEG[0], LIMITS_DEG[-1]))
+    for low, high in zip(smallest, largest):
+        (theory_low, played_low), (theory_high, played_high) = map(outcome.angles, (low, high))
+        physics = None
+        if played_low is not None and played_high is not None:
+            physics = played_high - played_low
+        case = case_name(high, f'limit {LIMITS_DEG[0]:g} to {LIMITS_DEG[-1]:g}°')
+        ours = (theory_high - theory_low, physics)
+        rows.append(row_of(NAME, case, high, 'angle_range', 'deg', ours))
+    return rows
+
+
+def _draw(outcome: Outcome, out: Path) -> None:
+    series = [
+        angle_series(NAME, outcome, _family(outcome.plan, limit), f'limit {limit:g}°')
+        for limit in LIMITS_DEG
+    ]
+    draw_angles(out / f'{NAME}.png', series)
+
+
+STUDY = Study(NAME, 'Amplitude modulation: angle by joint angle limit', _designs, _rows, _draw)

@@ -170,7 +170,7 @@ def _dress(axes: Axes, sub: SubShape, labelled: bool) -> None:
     axes.set_xticks(*phases)
     if sub.plane == 'phase':
         axes.set_yticks(*phases)
-        axes.set_ylabel(f'${second}$', labelpad=0)
+        axes.set_ylabel(f'${second}$', labelpad=2)
     else:
         axes.set_yticks([-90, -45, 0, 45, 90])
         axes.set_ylabel(f'${second}$ [deg]', labelpad=0)

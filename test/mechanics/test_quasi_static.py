@@ -68,7 +68,7 @@ def test_velocity_is_that_of_scipy_for_random_shapes(
     """Some of these stick: the point the body pivots on is found as well."""
     rng = np.random.default_rng(31)
     pivots = 0
-    for body, count in ((chain, 20), (uneven, 15), (PlanarChain(chain.lengths, 1.0, 12), 3)):
+    for body, count in ((chain, 12), (uneven, 12), (PlanarChain(chain.lengths, 1.0, 12), 3)):
         motion = QuasiStatic(body, CoulombFriction(ratio))
         for _ in range(count):
             angles = rng.uniform(-1.3, 1.3, body.n_joints)
@@ -77,7 +77,7 @@ def test_velocity_is_that_of_scipy_for_random_shapes(
             error = relative_error(body, motion.body_velocity(angles, rates), expected)
             assert error < ACCURACY, (angles, rates, pivot)
             pivots += pivot >= 0
-    assert pivots >= 5
+    assert pivots >= 4
 
 
 @pytest.mark.parametrize('size', [1e-12, 1e-6, 1e6])
@@ -189,3 +189,22 @@ def test_unusable_shapes_are_refused(chain: PlanarChain, angles, rates, field: s
     with pytest.raises(BadInputError) as caught:
         QuasiStatic(chain).body_velocity(angles, rates)
     assert caught.value.field == field
+
+
+@pytest.mark.parametrize('law', LAWS, ids=repr)
+def test_every_one_of_many_unrelated_shapes_is_solved(chain: PlanarChain, law: ForceLaw) -> None:
+    """No guess helps here, and a point sticks in every third."""
+    rng = np.random.default_rng(37)
+    angles, rates = rng.uniform(-1.5, 1.5, (20_000, 8)), rng.normal(size=(20_000, 8))
+    assert np.isfinite(QuasiStatic(chain, law).body_velocity(angles, rates)).all()
+
+
+def test_most_of_a_straight_body_stays_while_its_head_link_turns(chain: PlanarChain) -> None:
+    """Several points stick at once, or nearly."""
+    straight, head = np.zeros(8), np.eye(8)[0]
+    xi = QuasiStatic(chain).body_velocity(straight, 1e-3 * head)
+    state = chain.state(straight, 1e-3 * head)
+    turn = xi[2] * np.stack([-state.points[:, 1], state.points[:, 0]], axis=-1)
+    slip = np.linalg.norm(state.velocities + xi[:2] + turn, axis=1)
+    assert slip[:4].min() > 0.0
+    assert slip[12:].max() < 0.05 * slip.max()

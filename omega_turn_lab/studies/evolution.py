@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 NAME = 'evolution'
 QUARTERS = (0.25, 0.5, 0.75, 1.0)
 SNAPSHOTS = 6
+NARROWEST, GAP = 0.4, 0.1  # [m] least room for a snapshot, and between two
 
 
 def _task(plan: Plan) -> DesignTask:
@@ -92,26 +93,26 @@ def _draw(outcome: Outcome, out: Path) -> None:
 
 
 def _draw_snapshots(axes: Axes, outcome: Outcome, path: Array, poses: Array) -> None:
-    """Draw bodies side by side, heading kept, head marked, each under its instant."""
+    """Draw bodies side by side, heading kept, head marked, each over its instant."""
     from matplotlib.patches import Polygon
 
     task = _task(outcome.plan)
-    chain, width = task.problem.chain, task.robot.module_width
     chosen = np.linspace(0, len(poses) - 1, SNAPSHOTS).round().astype(int)
-    x = 0.0
-    for number, index in enumerate(chosen):
-        outline = chain.outline(path[index], (0.0, 0.0, poses[index, 2]))
-        outline = outline - 0.5 * (outline.min(axis=0) + outline.max(axis=0))
-        half = 0.5 * np.ptp(outline[:, 0])
-        x += half if number else 0.0
-        outline[:, 0] += x
-        for polygon in body_polygons(outline, width):
+    places = poses[chosen] * (0.0, 0.0, 1.0)
+    outlines = task.problem.chain.outline(path[chosen], places)
+    low, high = outlines.min(axis=1, keepdims=True), outlines.max(axis=1, keepdims=True)
+    outlines -= 0.5 * (low + high)
+    room = np.maximum((high - low)[:, 0, 0], NARROWEST) + GAP
+    centres = np.cumsum(room) - 0.5 * room
+    outlines[..., 0] += centres[:, None]
+    bottom = outlines[..., 1].min() - GAP
+    for index, centre, outline in zip(chosen, centres, outlines):
+        for polygon in body_polygons(outline, task.robot.module_width):
             axes.add_patch(Polygon(polygon, facecolor=COLOURS[0], linewidth=0))
         axes.plot(*outline[0], 'o', color=COLOURS[1], ms=2.5)
-        axes.annotate(f'{index / (len(poses) - 1):.1f}', (x, -0.78), ha='center')
-        x += half + 0.16
-    axes.set_xlim(-0.75, x)
-    axes.set_ylim(-0.85, 0.7)
+        axes.annotate(f'{index / (len(poses) - 1):.1f}', (centre, bottom), ha='center', va='top')
+    axes.set_xlim(0.0, room.sum())
+    axes.set_ylim(bottom - 1.5 * GAP, outlines[..., 1].max() + GAP)
     axes.set_aspect('equal')
     axes.axis('off')
 

@@ -83,7 +83,7 @@ def draw_series(axes: Axes, series: Sequence[Series]) -> None:
                 markeredgewidth=0.8,
             )
         for k, mean, deviation in one.paper:
-            draw_paper(axes, k, mean, deviation, colour)
+            draw_paper(axes, k, mean, deviation, colour if len(series) > 1 else 'k')
     axes.set_xlabel('spatial frequency of the turning wave, $k_t$')
     axes.set_xticks(sorted({k for one in series for k in one.k}))
     axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
@@ -108,25 +108,31 @@ def draw_paper(
     )
 
 
-def add_legends(axes: Axes, with_pybullet: bool, columns: int = 1, **place: Any) -> None:
-    """Add two legends above the axes: what the colours are, and what the marks are."""
+def add_legend(figure: Figure, axes: Axes, with_pybullet: bool) -> None:
+    """Add a legend above everything: what the marks are, then what the colours are."""
     from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
 
-    handles, labels = axes.get_legend_handles_labels()
-    marks = [Line2D([], [], color='0.3', marker='o', ms=3.2)]
-    names = ['quasi-static']
+    grey = '0.3'
+    marks = {'quasi-static': Line2D([], [], color=grey, marker='o', ms=3.2)}
     if with_pybullet:
-        marks.append(Line2D([], [], linestyle='none', marker='o', ms=6.5, mfc='none', mec='0.3'))
-        names.append('PyBullet')
-    bar = axes.errorbar([], [], yerr=[], color='0.3', marker='_', ms=7, mew=1.6, capsize=2.6)
-    marks.append(bar)  # type: ignore[arg-type]
-    names.append('paper, robot (mean ± std)')
-    first = axes.legend(
-        marks, names, loc='lower left', bbox_to_anchor=(0.0, 1.0), ncols=3, borderaxespad=0.1
-    )
-    if len(labels) > 1:
-        axes.add_artist(first)
-        first.set_bbox_to_anchor((0.0, 1.09))
-        axes.legend(
-            handles, labels, loc='lower left', bbox_to_anchor=(0.0, 1.0), ncols=len(labels)
+        marks['PyBullet'] = Line2D(
+            [], [], linestyle='none', marker='o', markersize=6.5, mfc='none', mec=grey
         )
+    bar = axes.errorbar([], [], yerr=[], color=grey, marker='_', ms=7, mew=1.6, capsize=2.6)
+    handles, labels = axes.get_legend_handles_labels()
+    entries: dict[str, Any] = {**marks, 'paper, mean ± std': bar}
+    families: dict[str, Any] = dict(zip(labels, handles)) if len(labels) > 1 else {}
+    # Legends fill column by column; a blank evens the two rows out.
+    columns = max(len(entries), len(families))
+    rows = [list(part.items()) for part in (entries, families) if part]
+    for row in rows:
+        row += [(' ' * len(row), Patch(alpha=0.0))] * (columns - len(row))
+    ordered = [row[column] for column in range(columns) for row in rows]
+    figure.legend(
+        [handle for _, handle in ordered],
+        [label for label, _ in ordered],
+        loc='outside upper center',
+        ncols=columns,
+        columnspacing=1.2,
+    )

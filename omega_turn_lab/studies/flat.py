@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from omega_turn_lab.studies.areas import READINGS, area_readings
+from omega_turn_lab.studies.areas import READINGS
 from omega_turn_lab.studies.figures import (
     COLOURS,
-    MARKERS,
-    add_legends,
+    add_legend,
     draw_series,
     new_figure,
 )
@@ -26,15 +23,14 @@ from omega_turn_lab.studies.sweeps import (
     case_name,
     series_of,
 )
-from omega_turn_lab.studies.tasks import AREA_SAMPLES, DesignTask
+from omega_turn_lab.studies.tasks import DesignTask
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 NAME = 'flat'
 AREA_WEIGHTS = (3.0, 6.0)  # [rad/BL^2]; beyond, standing still is best
-SCALES = tuple(0.05 * i for i in range(8, 21))  # of both amplitudes, along the front
-STARTS = 'swept_area_least', 'swept_area_most'
+LEAST, MOST = 'swept_area_least', 'swept_area_most'
 
 
 def _family(plan: Plan) -> list[DesignTask]:
@@ -68,7 +64,7 @@ def _rows(outcome: Outcome) -> list[Row]:
     for task in _front(outcome.plan):
         case = f'area weight {task.area_weight:g} rad/BL²'
         rows.append(row_of(NAME, case, task, 'pareto', 'deg', outcome.angles(task), 'angle'))
-        areas = _areas(outcome, task, 'swept_area_least')
+        areas = _areas(outcome, task, LEAST)
         rows.append(row_of(NAME, case, task, 'pareto', 'BL^2', areas, 'swept_area'))
     return rows
 
@@ -81,7 +77,7 @@ def _draw(outcome: Outcome, out: Path) -> None:
         draw_series(above, [angles])
         above.set_ylabel('angle per cycle [deg]')
         above.set_xlabel('')
-        add_legends(above, angles.pybullet is not None)
+        add_legend(figure, above, angles.pybullet is not None)
         _draw_areas(below, outcome, family)
     _draw_front(outcome, out / f'{NAME}_pareto.png')
 
@@ -91,7 +87,7 @@ def _draw_areas(axes: Axes, outcome: Outcome, family: Sequence[DesignTask]) -> N
     series = series_of(
         NAME, family, [_areas(outcome, t, 'swept_area') for t in family], 'swept_area', ''
     )
-    least, most = ([_areas(outcome, t, reading)[0] for t in family] for reading in STARTS)
+    least, most = ([_areas(outcome, t, reading)[0] for t in family] for reading in (LEAST, MOST))
     axes.fill_between(series.k, least, most, color=COLOURS[0], alpha=0.18, linewidth=0)
     axes.annotate(
         'band: any start of the cycle,\nline: from the straightest shape',
@@ -104,36 +100,51 @@ def _draw_areas(axes: Axes, outcome: Outcome, family: Sequence[DesignTask]) -> N
 
 
 def _draw_front(outcome: Outcome, path: Path) -> None:
-    """Draw angle against swept area for k_t = 1, the paper's point beside it."""
-    with new_figure(path, 2.7) as figure:
+    """Draw angle against swept area: the family, omega turns of less area, the paper's points."""
+    family, front = _family(outcome.plan), _front(outcome.plan)
+    with new_figure(path, 3.0) as figure:
         axes = figure.add_subplot()
-        for task, colour, marker in zip(_front(outcome.plan), COLOURS, MARKERS):
-            areas, angles = zip(*(_scaled(outcome, task, scale) for scale in SCALES))
-            label = f'area weight {task.area_weight:g} rad/BL$^2$'
-            axes.plot(areas, angles, color=colour, marker=marker, markevery=[-1], label=label)
-            (_, angle), (_, area) = (outcome.angles(task), _areas(outcome, task, STARTS[0]))
-            if angle is not None and area is not None:
-                axes.plot(area, angle, marker, ms=6.5, mfc='none', mec=colour, mew=0.8)
-        params = params_of(_front(outcome.plan)[0])
-        (area, area_std), (angle, angle_std) = (
-            paper_figure(NAME, quantity, params) for quantity in ('swept_area', 'angle')
+        x, y = _points(outcome, family)
+        axes.plot(x, y, 'o', color='0.45', ms=3.2, label='largest angle at each $k_t$')
+        for task, *place in zip(family, x, y):
+            if task not in front:  # which the legend names
+                _name_point(axes, f'{task.k_t:g}', place, '0.45', (-4, -1), 'right')
+            mean, deviation = paper_figure(NAME, 'angle', params_of(task))
+            size, spread = paper_figure(NAME, 'swept_area', params_of(task))
+            if mean is not None and size is not None:
+                axes.errorbar(size, mean, deviation, spread, color='k', capsize=2.6)
+                _name_point(axes, f'{task.k_t:g}', (size, mean), 'k', (4, 3), 'left')
+        axes.plot(
+            *_points(outcome, front),
+            's-',
+            color=COLOURS[1],
+            ms=3.2,
+            label='$k_t$ = 1, area weighed',
         )
-        if area is not None and angle is not None:
-            label = 'paper, robot (mean ± std)'
-            axes.errorbar(area, angle, angle_std, area_std, color='k', capsize=2.6, label=label)
+        played = [(_areas(outcome, task, LEAST)[1], outcome.angles(task)[1]) for task in front]
+        if outcome.played:
+            open_mark: dict[str, Any] = {'ms': 6.0, 'mfc': 'none', 'mec': COLOURS[1], 'mew': 0.8}
+            axes.plot(*zip(*played), 's', **open_mark, label='the same in PyBullet')
+        axes.errorbar([], [], [], [], color='k', capsize=2.6, label='paper, mean ± std')
         axes.set_xlabel('swept area, least over the start of the cycle [BL$^2$]')
         axes.set_ylabel('angle per cycle [deg]')
-        axes.legend()
+        axes.set_ylim(bottom=0.0)
+        axes.margins(x=0.12)
+        figure.legend(loc='outside upper center', ncols=2)
 
 
-def _scaled(outcome: Outcome, task: DesignTask, scale: float) -> tuple[float, float]:
-    """Swept area [BL^2] and angle [deg] of a gait with both amplitudes scaled."""
-    gait, problem = outcome.gait(task), task.problem
-    phases = np.linspace(0.0, 2.0 * np.pi, AREA_SAMPLES + 1)
-    path = gait.angles(phases, task.robot.n_yaw, scale)
-    poses = problem.motion.pose_along(path)
-    areas = area_readings(problem.chain, problem.width, path, poses)
-    return areas['swept_area_least'], float(np.degrees(poses[-1, 2]))
+def _points(outcome: Outcome, tasks: Sequence[DesignTask]) -> tuple[list[float], list[float]]:
+    """Swept area [BL^2] and angle [deg] by force balance."""
+    areas = [_areas(outcome, task, LEAST)[0] for task in tasks]
+    return areas, [outcome.angles(task)[0] for task in tasks]
+
+
+def _name_point(
+    axes: Axes, text: str, place: Sequence[float], colour: str, shift: tuple[int, int], ha: str
+) -> None:
+    axes.annotate(
+        text, (place[0], place[1]), shift, textcoords='offset points', color=colour, ha=ha
+    )
 
 
 STUDY = Study(NAME, 'Flat ground: angle and swept area by k_t', _designs, _rows, _draw)

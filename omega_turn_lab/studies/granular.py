@@ -51,12 +51,12 @@ def _rows(outcome: Outcome) -> list[Row]:
     for k_t in K_T:
         task = _hard_ground(outcome.plan, k_t)
         for ratio in RATIOS:
-            case = f'{turn_name(task)} for hard ground, F_perp/F_par {ratio:g}'
+            case = f'{turn_name(task)} for hard ground, ratio {ratio:g}'
             ours = (_angle_deg(outcome, task, ratio), None)
             rows.append(row_of(NAME, case, task, 'angle', 'deg', ours))
         for ratio in DESIGN_RATIOS:
             task = _on_grains(outcome.plan, k_t, ratio)
-            case = f'{turn_name(task)} for grains, F_perp/F_par {ratio:g}'
+            case = f'{turn_name(task)} for grains, ratio {ratio:g}'
             ours = (outcome.designed[task]['angle_deg'], None)
             rows.append(row_of(NAME, case, task, 'angle', 'deg', ours))
     return rows
@@ -79,10 +79,19 @@ def _draw(outcome: Outcome, out: Path) -> None:
             if mean is not None and deviation is not None:
                 band = (mean - deviation, mean + deviation)
                 axes.axhspan(*band, color=colour, alpha=0.18, linewidth=0)
-        axes.set_xlim(1.0, FINE_RATIOS[-1] + 0.1)
+        axes.plot([], [], 'o', color='0.3', ms=4.5, label='designed for these grains')
+        axes.fill_between([], [], [], color='0.3', alpha=0.25, linewidth=0, label='paper, ± std')
+        axes.set_xlim(1.0, FINE_RATIOS[-1])
         axes.set_xlabel('resistance sideways over lengthways, $F_\\perp / F_\\parallel$')
         axes.set_ylabel('angle per cycle [deg]')
-        axes.legend()
+        figure.legend(loc='outside upper center', ncols=2)
 
 
-STUDY = Study(NAME, 'Granular ground: angle by resistance', _designs, _rows, _draw, played=False)
+STUDY = Study(
+    NAME,
+    'Granular ground: angle by ratio of resistance F_perp/F_par',
+    _designs,
+    _rows,
+    _draw,
+    played=False,
+)

@@ -12,8 +12,8 @@ from omega_turn_lab.studies.published import paper_figure
 from omega_turn_lab.studies.tasks import DesignTask
 from omega_turn_ros import __version__
 
-UNITS = {'deg': '°', 'BL^2': ' BL²'}
-DIGITS = {'deg': 1, 'BL^2': 3}
+DIGITS = {'deg': 1, 'BL^2': 3}  # decimals shown
+FILE_WIDTH = 120  # [characters]
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,24 +102,26 @@ def print_table(title: str, rows: Sequence[Row]) -> None:
     from rich.table import Table
 
     table = Table(title=title, title_justify='left', box=None, pad_edge=False)
-    for name in ('case', 'quantity'):
+    for name in ('case', 'quantity', 'unit'):
         table.add_column(name)
     for name in ('ours', 'PyBullet', 'paper', 'difference'):
-        table.add_column(name, justify='right')
+        table.add_column(name, justify='right', no_wrap=True)
     for row in rows:
-        table.add_row(row.case, row.quantity, *_cells(row))
-    Console().print(table)
+        table.add_row(row.case, row.quantity, row.unit, *_cells(row))
+    console = Console()
+    # A file has no width: nothing need be folded there.
+    Console(width=None if console.is_terminal else FILE_WIDTH).print(table)
 
 
 def _cells(row: Row) -> tuple[str, str, str, str]:
-    digits, unit = DIGITS.get(row.unit, 2), UNITS.get(row.unit, '')
+    digits = DIGITS.get(row.unit, 2)
 
     def shown(value: float | None, sign: str = '') -> str:
-        return '' if value is None else f'{value:{sign}.{digits}f}{unit}'
+        return '' if value is None else f'{value:{sign}.{digits}f}'
 
     paper = shown(row.paper)
-    if row.paper is not None and row.paper_std is not None:
-        paper = f'{row.paper:.{digits}f} ± {row.paper_std:.{digits}f}{unit}'
+    if row.paper_std is not None:
+        paper += f' ± {row.paper_std:.{digits}f}'
     difference = None
     if row.paper is not None and row.quasi_static is not None:
         difference = row.quasi_static - row.paper

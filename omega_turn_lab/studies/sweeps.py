@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from omega_turn_lab.studies.figures import Series, add_legends, draw_series, new_figure
+from omega_turn_lab.studies.figures import Series, add_legend, draw_series, new_figure
 from omega_turn_lab.studies.published import paper_figure
 from omega_turn_lab.studies.rows import Row, params_of, row_of
 from omega_turn_lab.studies.study import Outcome
@@ -85,8 +85,8 @@ def angle_series(study: str, outcome: Outcome, tasks: Sequence[DesignTask], labe
 
 def draw_angles(path: Path, series: Sequence[Series]) -> None:
     """Draw angle per cycle over k_t, one curve per family."""
-    with new_figure(path, 2.7) as figure:
+    with new_figure(path, 2.8) as figure:
         axes = figure.add_subplot()
         draw_series(axes, series)
         axes.set_ylabel('angle per cycle [deg]')
-        add_legends(axes, series[0].pybullet is not None)
+        add_legend(figure, axes, series[0].pybullet is not None)

@@ -54,7 +54,8 @@ CATALOGUE = (
     Recipe('geometric', 'Geometric turn, k_t = k_f = 1.5', k_t=1.5),
     Recipe(
         'omega_fast',
-        'Omega turn with Fourier amplitudes: most turn per second at a given peak joint speed',
+        'Fourier series of two harmonics, k_t = 0.75: most turn per second at equal joint speed',
+        k_t=0.75,
         method='fourier_2',
     ),
 )

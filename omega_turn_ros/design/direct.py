@@ -23,7 +23,7 @@ from omega_turn_ros.mechanics.swept_area import swept_area
 Array = NDArray[np.float64]
 
 SCREENED = 20  # random candidates per start; the best become the starts
-FINE_STRIDE = 10  # the last search keeps limits on the fine grid, and integrates every so many
+FINE_STRIDE = 5  # the last search keeps limits on the fine grid, and integrates every so many
 
 
 def design_direct(

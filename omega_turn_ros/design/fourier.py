@@ -23,7 +23,7 @@ from omega_turn_ros.gaits.fourier_gait import FourierGait
 Array = NDArray[np.float64]
 
 SCREENED = 60  # random candidates per start
-FINE_STRIDE = 10
+FINE_STRIDE = 5
 
 
 def design_fourier(

@@ -8,21 +8,19 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.gaits.wave_gait import WaveGait
 from omega_turn_ros.mechanics.chain import PlanarChain
 from omega_turn_ros.mechanics.force_laws import CoulombFriction, ForceLaw
 from omega_turn_ros.mechanics.quasi_static import QuasiStatic
-from omega_turn_ros.mechanics.self_collision import self_clearance
+from omega_turn_ros.mechanics.self_collision import clear_scale, self_clearance
 from omega_turn_ros.robot import Robot
 
 Array = NDArray[np.float64]
 
 SMALLEST_LIMIT = math.radians(1.0)
-FINE, FINEST = 1440, 20_000  # samples of a cycle in the last search, and where a limit is final
-NEAR = 0.02  # widths: gaps this close to the smallest are looked at again, between samples
+FINE, FINEST = 720, 20_000  # samples of a cycle in the last search, and where a limit is final
 REFINEMENT = 4  # shapes looked at between two samples where the body nearly meets itself
 
 
@@ -120,21 +118,8 @@ class DesignProblem:
             tolerance: how far below the largest clear scale it may end, relative.
         """
         factor = self.theta_max / float(np.abs(path).max())
-        gaps = self_clearance(self.chain, self.width, factor * path)
-        if gaps.min() >= NEAR * self.width:
-            return factor
-        tight = _refined(path, gaps < gaps.min() + NEAR * self.width)
-        if self.clearance(factor * tight) >= 0.0:
-            return factor
-
-        def gap(scale: float) -> float:  # bounded, for the root finder
-            return min(self.clearance(scale * tight), self.width)
-
-        clear: float = brentq(gap, 0.0, factor, xtol=0.5 * tolerance * factor)
-        clear *= 1.0 - tolerance
-        while self.clearance(clear * path) < 0.0:  # a shape that is clear at a larger scale only
-            clear *= 0.99
-        return clear
+        scaled = factor * path
+        return factor * clear_scale(self.chain, self.width, scaled, tolerance, REFINEMENT)
 
     def fitted(self, gait: WaveGait) -> WaveGait:
         """Scale both amplitudes so that the gait just keeps every limit on a fine grid.
@@ -146,15 +131,6 @@ class DesignProblem:
         if not np.abs(path).max() > 0.0:
             raise BadInputError('gait amplitudes', 0.0, 'not all zero')
         return gait.scaled(self.feasible_factor(path, 1e-7))
-
-
-def _refined(path: Array, chosen: NDArray[np.bool_]) -> Array:
-    """Shapes of the chosen rows and between them and the next, where a gap may be smaller yet."""
-    rows = np.flatnonzero(chosen[:-1])
-    between = np.arange(REFINEMENT) / REFINEMENT
-    steps = path[rows + 1] - path[rows]
-    fine = path[rows, None, :] + between[:, None] * steps[:, None, :]
-    return np.concatenate([fine.reshape(-1, path.shape[1]), path[chosen]])
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,13 +23,13 @@ PROBLEM = DesignProblem.of_robot(load_robot('limbless16'), math.radians(90.0))
 def test_turn_of_every_plane_is_told_three_ways() -> None:
     """Surface and loops are the line integral; the linear connection only nears the truth."""
     rows = height_rows(PROBLEM, GAIT)
-    turn = math.degrees(PROBLEM.turn(PROBLEM.path(GAIT)))
+    turn = math.degrees(PROBLEM.turn(PROBLEM.path(GAIT, 2000)))
     cases = {case for case, *_ in rows}
     assert len(cases) == 3
     for case in cases:
         found = {quantity: value for name, quantity, _, value in rows if name == case}
         assert found['surface'] + found['loops'] == pytest.approx(found['line'], abs=1.0)
-        assert found['direct'] == pytest.approx(turn, abs=1e-6)
+        assert found['direct'] == pytest.approx(turn, abs=0.02)
         assert found['line'] == pytest.approx(turn, rel=0.25)
         assert 0.0 < found['misfit'] < 0.3
     assert {unit for *_, unit, _ in rows} == {'deg', '1'}

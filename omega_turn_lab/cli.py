@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 from pathlib import Path
 
@@ -64,7 +65,12 @@ def _add_design(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--all', action='store_true', help='design the whole library')
     parser.add_argument('--k-f', type=float, default=1.5, help='waves of the forward wave')
     parser.add_argument('--k-t', type=float, default=1.0, help='waves of the turning wave')
-    parser.add_argument('--theta-max-deg', type=_angle, default=90.0, help='joint limit [deg]')
+    parser.add_argument(
+        '--theta-max-deg',
+        type=_angle,
+        default=None,
+        help="joint limit [deg]; default: 90, or the robot's own if that is less",
+    )
     parser.add_argument(
         '--method',
         default='direct',
@@ -72,7 +78,7 @@ def _add_design(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument('--name', default='', help='of the gait file; made of the rest if absent')
     parser.add_argument('--seed', type=int, default=0)
-    parser.add_argument('--out', type=Path, default=Path('config/gaits'), help='folder to write')
+    parser.add_argument('--out', type=Path, default=Path('gaits'), help='folder to write')
     parser.set_defaults(run=_run_design)
 
 
@@ -135,7 +141,8 @@ def _run_design(options: argparse.Namespace) -> int:
     if options.all:
         recipes = [within_limits(recipe, robot) for recipe in CATALOGUE]
         return run_design(robot, recipes, options.seed, options.out)
-    k_f, k_t, limit = options.k_f, options.k_t, options.theta_max_deg
+    k_f, k_t = options.k_f, options.k_t
+    limit = options.theta_max_deg or min(90.0, math.degrees(robot.position_limit))
     name = options.name or f'k{k_f:g}_{k_t:g}_{limit:g}deg_{options.method}'.replace('.', 'p')
     text = f'k_f = {k_f:g}, k_t = {k_t:g}, joint limit {limit:g} deg, {options.method}'
     recipe = Recipe(name, text, k_f, k_t, limit, options.method)

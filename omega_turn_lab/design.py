@@ -22,7 +22,7 @@ def run_design(robot: Robot, recipes: Sequence[Recipe], seed: int, out: Path) ->
         BadInputError: a recipe is out of the robot's range.
     """
     out.mkdir(parents=True, exist_ok=True)
-    lines = []
+    lines, entries = [], []
     for recipe in tqdm(recipes, desc='designing', unit='gait'):
         design, entry = design_recipe(recipe, robot, seed)
         text = yaml.safe_dump(
@@ -31,8 +31,18 @@ def run_design(robot: Robot, recipes: Sequence[Recipe], seed: int, out: Path) ->
         path = out / f'{recipe.name}.yaml'
         path.write_text(text)
         lines.append(_account(design, entry, path))
+        entries.append(entry)
     print('\n'.join(lines))
+    if len(entries) > 1:
+        most = max(entries, key=lambda entry: entry.calibration.largest_angle)
+        fastest = max(entries, key=_speed)
+        print(f'most turn per cycle: {most.name}; per second at equal joint speed: {fastest.name}')
     return 0
+
+
+def _speed(entry: LibraryGait) -> float:
+    """Heading per peak joint travel [rad/rad], as `turning_speed`."""
+    return entry.calibration.largest_angle / (2.0 * math.pi * entry.calibration.peak_rate)
 
 
 def _account(design: Design, entry: LibraryGait, path: Path) -> str:

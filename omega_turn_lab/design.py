@@ -51,7 +51,7 @@ def _account(design: Design, entry: LibraryGait, path: Path) -> str:
         f'{entry.name}: {math.degrees(design.angle):.1f} deg per cycle, largest joint angle '
         f'{math.degrees(entry.theta_max):.1f} deg, clears itself by {1e3 * design.clearance:.1f} '
         f'mm\n  {parameters}\n  {design.method}: {design.agreeing} of {design.starts} starts '
-        f'within 1 % of the best, {design.evaluations} cycles integrated, stopped by '
+        f'within 5 % of the best, {design.evaluations} cycles integrated, stopped by '
         f'{design.reason}\n  written to {path}'
     )
 

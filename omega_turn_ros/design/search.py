@@ -25,7 +25,7 @@ FOLLOWED = 3  # tops that differ, from which CMA-ES goes on
 STEP = 0.1  # of CMA-ES at first, in every direction
 TOLERANCE, FINE_TOLERANCE = 1e-3, 1e-5  # spread of costs in a generation that has converged
 EVALUATIONS, FINE_EVALUATIONS = 45, 300  # at most, per parameter
-SAME = 0.01  # relative difference of two optima that count as one
+SAME = 0.05  # a climb this close to the best, relative, counts as agreeing
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +36,7 @@ class SearchResult:
         best: parameters, shape (D,).
         cost: of them.
         evaluations: of either cost, all starts.
-        agreeing: starts whose coarse optimum was within 1 % of the best.
+        agreeing: starts whose short climb came within 5 % of the best.
         reason: why the last search stopped.
     """
 

@@ -1,4 +1,4 @@
-"""Parameters the shipped gaits start from, designed off-line on the paper's robot.
+"""Gaits with rounded parameters, designed elsewhere on the paper's robot: a fixed yardstick.
 
 Each was optimised for the largest angle per cycle under its joint limit with N = 8, k_f = 1.5,
 14 cm links, isotropic Coulomb friction.

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-import pybullet
-
 from omega_turn_ros.errors import BadInputError
+from omega_turn_sim_bridge.engine import pybullet
 
 
 def _flat(client: int, seed: int) -> list[int]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import signal
 import sys
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from omega_turn_ros.errors import OmegaTurnError
 def main(arguments: list[str] | None = None) -> int:
     """Run `omega_turn`; return the exit code: 0 done, 1 failed, 2 bad input, 130 interrupted."""
     options = _parser().parse_args(arguments)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # ends as Ctrl-C does
     try:
         return int(options.run(options))
     except KeyboardInterrupt:
@@ -55,8 +57,10 @@ def _add_demo(parser: argparse.ArgumentParser) -> None:
 def _add_turn(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--deg', type=_angle, required=True, help='+ = counter-clockwise')
     parser.add_argument('--namespace', default='', help='of the gait node')
-    parser.add_argument('--domain-id', type=int, default=None, help='default: ROS_DOMAIN_ID or 0')
-    parser.add_argument('--timeout', type=float, default=10.0, help='for the gait node [s]')
+    parser.add_argument(
+        '--domain-id', type=_domain, default=None, help='default: ROS_DOMAIN_ID or 0'
+    )
+    parser.add_argument('--timeout', type=_seconds, default=10.0, help='for the gait node [s]')
     parser.set_defaults(run=_run_turn)
 
 
@@ -101,10 +105,34 @@ def _add_reproduce(parser: argparse.ArgumentParser) -> None:
 
 
 def _angle(text: str) -> float:
-    value = float(text)
-    if not abs(value) < 1e6:
-        raise argparse.ArgumentTypeError(f'{text}: expected a finite angle [deg]')
+    value = _number(text, 'a number [deg]')
+    if abs(value) >= 1e6:
+        raise argparse.ArgumentTypeError(f'{text}: expected less than 1e6 deg')
     return value
+
+
+def _seconds(text: str) -> float:
+    expected = 'a time > 0 [s]'
+    value = _number(text, expected)
+    if not 0.0 < value < math.inf:
+        raise argparse.ArgumentTypeError(f'{text}: expected {expected}')
+    return value
+
+
+def _number(text: str, expected: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if math.isnan(value):
+        raise argparse.ArgumentTypeError(f'{text}: expected {expected}')
+    return value
+
+
+def _domain(text: str) -> int:
+    if not text.isdecimal() or int(text) > 232:
+        raise argparse.ArgumentTypeError(f'{text}: expected 0..232')
+    return int(text)
 
 
 def _run_demo(options: argparse.Namespace) -> int:

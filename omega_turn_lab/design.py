@@ -9,6 +9,7 @@ from pathlib import Path
 import yaml
 from tqdm import tqdm
 
+from omega_turn_lab.folder import make_folder
 from omega_turn_ros.design.catalogue import Recipe, design_recipe
 from omega_turn_ros.design.problem import Design
 from omega_turn_ros.gaits.library import LibraryGait, gait_to_mapping
@@ -19,9 +20,9 @@ def run_design(robot: Robot, recipes: Sequence[Recipe], seed: int, out: Path) ->
     """Write one file per recipe into `out`; return 0.
 
     Raises:
-        BadInputError: a recipe is out of the robot's range.
+        BadInputError: a recipe is out of the robot's range, or the folder cannot be written to.
     """
-    out.mkdir(parents=True, exist_ok=True)
+    make_folder(out)
     lines, entries = [], []
     for recipe in tqdm(recipes, desc='designing', unit='gait'):
         design, entry = design_recipe(recipe, robot, seed)

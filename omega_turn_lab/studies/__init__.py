@@ -10,5 +10,6 @@ NAMES = (
     'joints',
     'granular',
     'height',
+    'sensitivity',
     'beyond',
 )

@@ -43,7 +43,7 @@ def _speeds(outcome: Outcome, task: DesignTask) -> tuple[float, float | None]:
     """Mean turning speed [deg/s] with the fastest joint at the peak speed, uniform clock."""
     path = _path(outcome, task)
     ours, physics = outcome.angles(task)
-    per_degree = PEAK_SPEED * turning_speed(1.0, path)
+    per_degree = PEAK_SPEED * float(turning_speed(1.0, path))
     return ours * per_degree, None if physics is None else physics * per_degree
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import signal
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol, TypeVar
@@ -44,7 +46,8 @@ class LocalExecutor:
 
         with parallel_config(backend='loky', inner_max_num_threads=1):
             pool = Parallel(self.jobs, batch_size=1, return_as='generator_unordered')
-            yield from pool(delayed(_numbered)(*pair) for pair in enumerate(tasks))
+            home = os.getpid()
+            yield from pool(delayed(_numbered)(*pair, home) for pair in enumerate(tasks))
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +106,11 @@ def _run(task: Task) -> Result:
         raise OmegaTurnError(f'{task}: {error}') from error
 
 
-def _numbered(index: int, task: Task) -> tuple[int, Result]:
+def _numbered(index: int, task: Task, home: int) -> tuple[int, Result]:
+    """Run a case in a worker, or in the process `home` itself."""
+    if os.getpid() != home:
+        # Ctrl-C reaches every process of the terminal; home is the one that ends the others.
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
     return index, _run(task)
 
 

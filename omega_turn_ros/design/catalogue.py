@@ -10,6 +10,7 @@ from functools import partial
 from omega_turn_ros.design.calibrate import make_library_gait
 from omega_turn_ros.design.direct import design_direct
 from omega_turn_ros.design.fourier import design_fourier
+from omega_turn_ros.design.hierarchical import design_hierarchical
 from omega_turn_ros.design.problem import Design, DesignProblem
 from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.gaits.library import LibraryGait
@@ -18,6 +19,7 @@ from omega_turn_ros.robot import Robot
 METHODS: dict[str, Callable[[DesignProblem, int], Design]] = {
     'direct': design_direct,
     'speed': partial(design_direct, per_second=True),
+    'hierarchical': design_hierarchical,
     'fourier_1': partial(design_fourier, harmonics=1),
     'fourier_2': partial(design_fourier, harmonics=2),
 }

@@ -13,7 +13,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from omega_turn_ros.design.objective import cost_of, finish, turning_speed
+from omega_turn_ros.design.objective import Coefficients, cost_of, finish, turning_speed, turns
 from omega_turn_ros.design.problem import FINE, Design, DesignProblem
 from omega_turn_ros.design.search import search
 from omega_turn_ros.errors import BadInputError
@@ -56,21 +56,28 @@ def design_direct(
     rng = np.random.default_rng(seed)
     candidates = rng.normal(size=(SCREENED * starts, 6))
     candidates[:, 3:] = rng.uniform(-np.pi, np.pi, (SCREENED * starts, 3))
-    family = partial(gait_of, problem)
-    coarse = cost_of(problem, family, value)
-    fine = cost_of(replace(problem, samples=FINE), family, value, FINE_STRIDE)
+    coarse = cost_of(problem, coefficients_of, value)
+    fine = cost_of(replace(problem, samples=FINE), coefficients_of, value, FINE_STRIDE)
     found = search(coarse, fine, candidates, starts, seed)
     return finish(problem, gait_of(problem, found.best), found, starts, 'direct')
 
 
-def _value(problem: DesignProblem, path: Array, area_weight: float, per_second: bool) -> float:
+def _value(problem: DesignProblem, paths: Array, area_weight: float, per_second: bool) -> Array:
+    angles = turns(problem, paths)
     if per_second:
-        return turning_speed(problem.turn(path), path)
+        return turning_speed(angles, paths)
     if area_weight == 0.0:
-        return abs(problem.turn(path))
-    poses = problem.motion.pose_along(path)
-    area = swept_area(problem.chain, 0.0, path, poses)
-    return abs(float(poses[-1, 2])) - area_weight * area
+        return angles
+    poses = [problem.motion.pose_along(path) for path in paths]
+    areas = [swept_area(problem.chain, 0.0, *pair) for pair in zip(paths, poses)]
+    return angles - area_weight * np.array(areas)
+
+
+def coefficients_of(x: Array) -> Coefficients:
+    """Eq:prescribe_amp as series, of parameters (a_f gamma, a_f, a_o, phi_f, phi_o, psi)."""
+    mean, swing, turning, phi_f, phi_o, psi = x.T[:, :, None]
+    forward = (mean, swing * np.sin(phi_f), swing * np.cos(phi_f))
+    return forward, (turning, turning * np.sin(phi_o), turning * np.cos(phi_o)), (psi,)
 
 
 def gait_of(problem: DesignProblem, x: Array) -> TwoWaveGait:

@@ -9,12 +9,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from omega_turn_ros.design.objective import cost_of, finish, turning_speed
+from omega_turn_ros.design.objective import Coefficients, cost_of, finish, turning_speed, turns
 from omega_turn_ros.design.problem import FINE, Design, DesignProblem
 from omega_turn_ros.design.search import search
 from omega_turn_ros.errors import BadInputError
@@ -48,15 +47,20 @@ def design_fourier(
     fading = np.repeat(1.0 / np.arange(1, harmonics + 1) ** 2, 2)
     candidates *= np.tile(np.concatenate([[1.0], fading]), 3)
     candidates[:, 2 * terms] = rng.uniform(-np.pi, np.pi, SCREENED * starts)
-    family = partial(gait_of, problem)
-    coarse = cost_of(problem, family, _value)
-    fine = cost_of(replace(problem, samples=FINE), family, _value, FINE_STRIDE)
+    coarse = cost_of(problem, coefficients_of, _value)
+    fine = cost_of(replace(problem, samples=FINE), coefficients_of, _value, FINE_STRIDE)
     found = search(coarse, fine, candidates, starts, seed)
     return finish(problem, gait_of(problem, found.best), found, starts, 'fourier')
 
 
-def _value(problem: DesignProblem, path: Array) -> float:
-    return turning_speed(problem.turn(path), path)
+def _value(problem: DesignProblem, paths: Array) -> Array:
+    return turning_speed(turns(problem, paths), paths)
+
+
+def coefficients_of(x: Array) -> Coefficients:
+    """Coefficients of F, T and L, which parameter vectors hold one after the other."""
+    forward, turning, lag = np.split(x.T[:, :, None], 3)
+    return tuple(forward), tuple(turning), tuple(lag)
 
 
 def gait_of(problem: DesignProblem, x: Array) -> FourierGait:

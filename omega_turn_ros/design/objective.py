@@ -2,53 +2,68 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from omega_turn_ros.design.problem import Design, DesignProblem
-from omega_turn_ros.design.search import SearchResult
+from omega_turn_ros.design.search import Cost, SearchResult
 from omega_turn_ros.errors import BadInputError
+from omega_turn_ros.gaits.fourier_gait import fourier_waves
+from omega_turn_ros.gaits.two_wave import two_wave_angles
 from omega_turn_ros.gaits.wave_gait import WaveGait
 
 Array = NDArray[np.float64]
+Coefficients = tuple[Sequence[Array], Sequence[Array], Sequence[Array]]
 
 
 def cost_of(
     problem: DesignProblem,
-    family: Callable[[Array], WaveGait],
-    value: Callable[[DesignProblem, Array], float],
+    family: Callable[[Array], Coefficients],
+    value: Callable[[DesignProblem, Array], Array],
     stride: int = 1,
-) -> Callable[[Array], float]:
-    """Cost of a parameter vector: minus the value of its gait, scaled to just keep the limits.
+) -> Cost:
+    """Cost of parameter vectors: minus the value of their gaits, scaled to just keep the limits.
 
     Args:
         problem: limits are kept on its samples of the cycle.
-        family: gait of a parameter vector, at any scale.
-        value: of a closed path, the larger the better.
+        family: coefficients of F, T and L (see `FourierGait`), each shape (P, 1), of parameter
+            vectors, shape (P, D), at any scale.
+        value: of closed paths, shape (P, T, N), the larger the better, shape (P,).
         stride: the value is taken on every so many samples.
     """
+    k_f, k_t, n = problem.k_f, problem.k_t, problem.chain.n_joints
 
-    def cost(x: Array) -> float:
-        path = family(x).angles(problem.phases, problem.chain.n_joints)
-        return -value(problem, problem.feasible_factor(path) * path[::stride])
+    def cost(x: Array) -> Array:
+        forward, tau_f, turning, tau_t = fourier_waves(problem.phases, *family(x))
+        paths = two_wave_angles(forward, tau_f, turning, tau_t, k_f, k_t, n)
+        factors = np.array([problem.feasible_factor(path) for path in paths])
+        return -value(problem, factors[:, None, None] * paths[:, ::stride])
 
     return cost
 
 
-def turning_speed(angle: float, path: Array) -> float:
-    """Heading per peak joint travel of a closed path at a uniform clock [rad/rad].
+def turns(problem: DesignProblem, paths: Array) -> Array:
+    """Angle per cycle of closed paths without its sign [rad], shape (P,), of (P, T, N)."""
+    result: Array = np.abs(problem.motion.displacements(paths)[..., 2].sum(axis=-1))
+    return result
+
+
+def turning_speed(angle: ArrayLike, path: Array) -> Array:
+    """Heading per peak joint travel of closed paths at a uniform clock [rad/rad].
 
     Times the largest joint speed [rad/s] it is the mean turning speed [rad/s]: at uniform phase
     rate a cycle takes 2 pi (peak rate) / (largest speed) (own derivation).
 
     Args:
-        angle: per cycle [rad].
-        path: both ends of the cycle included [rad], shape (T + 1, N).
+        angle: per cycle [rad], shape (...).
+        path: both ends of the cycle included [rad], shape (..., T + 1, N).
     """
-    samples = path.shape[0] - 1
-    return abs(angle) / (samples * float(np.abs(np.diff(path, axis=0)).max()))
+    samples = path.shape[-2] - 1
+    fastest = np.abs(np.diff(path, axis=-2)).max(axis=(-2, -1))
+    result: Array = np.abs(angle) / (samples * fastest)
+    return result
 
 
 def finish(

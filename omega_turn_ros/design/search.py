@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-Cost = Callable[[Array], float]
+Cost = Callable[[Array], Array]  # of parameter vectors, shape (P, D): shape (P,)
 
 STEP = 0.4  # standard deviation at first, in every direction
 ROUND = 15  # generations between two halvings
@@ -43,13 +43,13 @@ def search(coarse: Cost, fine: Cost, candidates: Array, starts: int, seed: int) 
     """Minimise from the best of the candidates, then on a finer cost from the winner.
 
     Args:
-        coarse: cost of one parameter vector, quick.
+        coarse: cost of parameter vectors, quick.
         fine: the cost that counts.
         candidates: parameter vectors to choose the starts from, shape (C, D), C >= starts.
         starts: how many to follow.
         seed: of CMA-ES; equal seeds give equal results.
     """
-    values = np.array([coarse(x) for x in candidates])
+    values = coarse(candidates)
     chosen = np.argsort(values, kind='stable')[:starts]
     runs = [
         _strategy(candidates[index], STEP, TOLERANCE, EVALUATIONS, seed * 1000 + k)
@@ -97,5 +97,5 @@ def _advance(run: cma.CMAEvolutionStrategy, cost: Cost, generations: int | None 
     count = 0
     while not run.stop() and (generations is None or count < generations):
         batch = run.ask()
-        run.tell(batch, [cost(x) for x in batch])
+        run.tell(batch, cost(np.array(batch)).tolist())
         count += 1

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
@@ -50,13 +51,13 @@ class FourierGait(WaveGait):
 
     def phases(self, phase: ArrayLike) -> tuple[Array, Array]:
         """See `WaveGait.phases`."""
-        tau_t = np.asarray(phase, float)
-        return tau_t - _series(self.lag, tau_t), tau_t
+        _, tau_f, _, tau_t = fourier_waves(phase, self.forward, self.turning, self.lag)
+        return tau_f, tau_t
 
     def amplitudes(self, phase: ArrayLike) -> tuple[Array, Array]:
         """See `WaveGait.amplitudes`."""
-        tau_f, tau_t = self.phases(phase)
-        return _series(self.forward, tau_f), _series(self.turning, tau_t)
+        forward, _, turning, _ = fourier_waves(phase, self.forward, self.turning, self.lag)
+        return forward, turning
 
     def waves_at(self, phase: float) -> tuple[float, float, float, float]:
         """See `WaveGait.waves_at`."""
@@ -105,10 +106,33 @@ def _check_number(field: str, value: object) -> None:
         raise BadInputError(field, value, 'finite numbers')
 
 
-def _series(coefficients: tuple[float, ...], tau: Array) -> Array:
-    total = np.full(tau.shape, coefficients[0])
+def fourier_waves(
+    phase: ArrayLike,
+    forward: Sequence[ArrayLike],
+    turning: Sequence[ArrayLike],
+    lag: Sequence[ArrayLike],
+) -> tuple[Array, Array, Array, Array]:
+    """Amplitudes and phases of many gaits at once; coefficients as in `FourierGait`.
+
+    Args:
+        phase: gait phase tau_t [rad], shape (...).
+        forward: coefficients of F [rad], each broadcasting with `phase`.
+        turning: coefficients of T [rad], likewise.
+        lag: coefficients of L [rad], likewise.
+
+    Returns:
+        A_f, tau_f, A_t, tau_t [rad], each shape (...).
+    """
+    tau_t = np.asarray(phase, float)
+    tau_f = tau_t - _series(lag, tau_t)
+    return _series(forward, tau_f), tau_f, _series(turning, tau_t), tau_t
+
+
+def _series(coefficients: Sequence[ArrayLike], tau: Array) -> Array:
+    total: Array = np.asarray(coefficients[0], float) + np.zeros_like(tau)
     for m in range(1, len(coefficients) // 2 + 1):
-        total += coefficients[2 * m - 1] * np.cos(m * tau) + coefficients[2 * m] * np.sin(m * tau)
+        total = total + np.asarray(coefficients[2 * m - 1]) * np.cos(m * tau)
+        total = total + np.asarray(coefficients[2 * m]) * np.sin(m * tau)
     return total
 
 

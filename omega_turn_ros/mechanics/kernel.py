@@ -1,16 +1,16 @@
 """Compiled force balance: the body velocity at which ground forces and torque add up to zero.
 
 Newton's method on the three residuals. Laws that depend on the direction of slip only are smoothed
-by epsilon, |v| -> sqrt(v^2 + epsilon^2): a first attempt takes the last epsilon at once from the
-caller's guess, which nearly always works along a path; where it does not (a foot that sticks, a
-bad guess), epsilon is lowered in steps from one at which the law is nearly linear.
-Own derivation. Inside, all quantities are in units of the body's size and mean shape speed. One
-file, because the compile cache looks at the file of the outermost function only.
+by epsilon, |v| -> sqrt(v^2 + epsilon^2). From a good guess the last epsilon works at once, unless
+a contact point sticks; then the body pivots on it, which leaves one unknown. Where neither works
+epsilon is lowered in steps from one at which the law is nearly linear. Own derivation.
+Inside, all quantities are in units of the body's size and mean shape speed. One file, because the
+compile cache looks at the file of the outermost function only.
 """
 
 from __future__ import annotations
 
-from math import cos, sin, sqrt
+from math import cos, hypot, pi, sin, sqrt
 
 import numpy as np
 from numba import njit
@@ -23,12 +23,16 @@ Array = NDArray[np.float64]
 # Sums may be reordered, which lets the compiler use vector instructions; NaN is still NaN.
 FAST = {'reassoc', 'nsz', 'contract', 'arcp'}
 
-LAST_EPSILON = 1e-8  # error of a velocity where a foot sticks; else its square
-STEP_TOLERANCE = 1e-10  # Newton's last step; the error left is about its square
-ROUNDING = 1e-7  # residual left where a foot sticks: rounding of its slip over epsilon
-ATTEMPT = (8, 2)  # Newton steps, trials per step
+LAST_EPSILON = 1e-8  # error of a velocity is its square, unless several points stick
+STEP_TOLERANCE = 1e-8  # Newton's last step; the error left is about its square
+ROUNDING = 1e-7  # residual left where points stick: rounding of their slip over epsilon
+ATTEMPT = (12, 3)  # Newton steps, trials per step
 STAGE = (60, 25)
-FIRST_EPSILON, REDUCTION = 0.3, 0.1
+FIRST_EPSILON, TRY_BELOW = 1.0, 0.2
+REDUCTIONS = (0.1, 0.4, 0.8)  # of epsilon: patient only where haste fails
+PIVOT_STEPS = 6
+STICKING = 0.1  # slip in a good guess above which a point does not stick
+HUGE_EPSILON = 1e12  # smoothed so far, a law is linear
 # workspace: 0..2 residual, 3..11 its derivative by rows
 
 
@@ -59,69 +63,84 @@ def _coulomb_sums(px, py, vx, vy, w, xi, epsilon, out):  # type: ignore[no-untyp
     out[9], out[10], out[11] = h02, h12, h22
 
 
+@njit(cache=True, nogil=True, fastmath=FAST, error_model='numpy')
+def _elliptic_sums(ratio, px, py, vx, vy, tx, ty, w, xi, epsilon, out):  # type: ignore[no-untyped-def]
+    """The same for an elliptic law: isotropic once slip across the link is stretched."""
+    a, b, c, e2 = xi[0], xi[1], xi[2], epsilon * epsilon
+    g0 = g1 = g2 = h00 = h01 = h11 = h02 = h12 = h22 = 0.0
+    for j in range(px.size):
+        x, y, t0, t1 = px[j], py[j], tx[j], ty[j]
+        n0, n1 = -ratio * t1, ratio * t0
+        t2, n2 = x * t1 - y * t0, x * n1 - y * n0
+        sx, sy = vx[j] + a - c * y, vy[j] + b + c * x
+        along, across = t0 * sx + t1 * sy, n0 * sx + n1 * sy
+        inverse = 1.0 / sqrt(along * along + across * across + e2)
+        ut, un = along * inverse, across * inverse
+        u0, u1, u2 = ut * t0 + un * n0, ut * t1 + un * n1, ut * t2 + un * n2
+        k = w[j] * inverse
+        g0 += w[j] * u0
+        g1 += w[j] * u1
+        g2 += w[j] * u2
+        h00 += k * (t0 * t0 + n0 * n0 - u0 * u0)
+        h01 += k * (t0 * t1 + n0 * n1 - u0 * u1)
+        h11 += k * (t1 * t1 + n1 * n1 - u1 * u1)
+        h02 += k * (t0 * t2 + n0 * n2 - u0 * u2)
+        h12 += k * (t1 * t2 + n1 * n2 - u1 * u2)
+        h22 += k * (t2 * t2 + n2 * n2 - u2 * u2)
+    out[0], out[1], out[2] = g0, g1, g2
+    out[3], out[4], out[5] = h00, h01, h02
+    out[6], out[7], out[8] = h01, h11, h12
+    out[9], out[10], out[11] = h02, h12, h22
+
+
 @njit(cache=True, nogil=True, fastmath=FAST, error_model='numpy', inline='always')
-def _resist(kind, law, vt, vn, e2):  # type: ignore[no-untyped-def]
-    """Resistance (minus the force) in link axes and its derivatives: rt, rn, tt, tn, nt, nn."""
-    if kind == LINEAR:
-        return vt, law[0] * vn, 1.0, 0.0, 0.0, law[0]
-    if kind == ELLIPTIC:
-        c2 = law[0] * law[0]
-        inverse = 1.0 / sqrt(vt * vt + c2 * vn * vn + e2)
-        ut, un = vt * inverse, vn * inverse
-        mixed = -c2 * ut * un * inverse
-        across = c2 * inverse * (1.0 - c2 * un * un)
-        return ut, c2 * un, inverse * (1.0 - ut * ut), mixed, mixed, across
-    # Smoothed in size only: bent inside the circle, the law would fold and stick twice.
-    slip = sqrt(vt * vt + vn * vn + 1e-60)
-    inverse = 1.0 / sqrt(slip * slip + e2)
-    ut, un, share = vt / slip, vn / slip, slip * inverse
+def _resist(law, ut, un):  # type: ignore[no-untyped-def]
+    """Granular resistance at unit slip, minus the force, and its derivatives by u_t and u_n."""
     bend = 1.0 / (1.0 + abs(un))
     root = 1.0 / sqrt(1.0 + law[3] * law[3] * un * un)
     rt = law[0] * ut + law[1] * ut * abs(ut) * bend
     rn = law[0] * un + law[2] * law[3] * un * root
-    # by the direction first, then the direction by the velocity
-    a = law[0] + 2.0 * law[1] * abs(ut) * bend
-    b = -law[1] * ut * abs(ut) * bend * bend * (1.0 if un >= 0.0 else -1.0)
-    d = law[0] + law[2] * law[3] * root * root * root
-    tt, mixed, nn = inverse * un * un, -inverse * ut * un, inverse * ut * ut
-    grow = e2 * inverse * inverse * inverse
-    return (
-        share * rt,
-        share * rn,
-        a * tt + b * mixed + grow * rt * ut,
-        a * mixed + b * nn + grow * rt * un,
-        d * mixed + grow * rn * ut,
-        d * nn + grow * rn * un,
-    )
+    tt = law[0] + 2.0 * law[1] * abs(ut) * bend
+    tn = -law[1] * ut * abs(ut) * bend * bend * np.copysign(1.0, un)
+    return rt, rn, tt, tn, law[0] + law[2] * law[3] * root * root * root
 
 
 @njit(cache=True, nogil=True, fastmath=FAST, error_model='numpy')
-def _law_sums(kind, law, px, py, vx, vy, tx, ty, w, xi, epsilon, out):  # type: ignore[no-untyped-def]
-    """Residual and Jacobian for a law in link axes."""
+def _granular_sums(law, px, py, vx, vy, tx, ty, w, xi, epsilon, out):  # type: ignore[no-untyped-def]
+    """The same for grains. Smoothed in size only: bent inside the circle, the law would fold."""
     a, b, c, e2 = xi[0], xi[1], xi[2], epsilon * epsilon
     g0 = g1 = g2 = h00 = h01 = h02 = h10 = h11 = h12 = h20 = h21 = h22 = 0.0
     for j in range(px.size):
-        x, y, cosine, sine = px[j], py[j], tx[j], ty[j]
+        x, y, t0, t1 = px[j], py[j], tx[j], ty[j]
+        n0, n1 = -t1, t0
+        t2, n2 = x * t1 - y * t0, x * n1 - y * n0  # levers of the link axes
         sx, sy = vx[j] + a - c * y, vy[j] + b + c * x
-        rt, rn, tt, tn, nt, nn = _resist(
-            kind, law, cosine * sx + sine * sy, cosine * sy - sine * sx, e2
-        )
-        lt, ln = x * sine - y * cosine, x * cosine + y * sine  # levers of the link axes
-        g0 += w[j] * (cosine * rt - sine * rn)
-        g1 += w[j] * (sine * rt + cosine * rn)
-        g2 += w[j] * (lt * rt + ln * rn)
-        # rows of d(rt, rn)/d(xi)
-        t0, t1, t2 = tt * cosine - tn * sine, tt * sine + tn * cosine, tt * lt + tn * ln
-        n0, n1, n2 = nt * cosine - nn * sine, nt * sine + nn * cosine, nt * lt + nn * ln
-        h00 += w[j] * (cosine * t0 - sine * n0)
-        h01 += w[j] * (cosine * t1 - sine * n1)
-        h02 += w[j] * (cosine * t2 - sine * n2)
-        h10 += w[j] * (sine * t0 + cosine * n0)
-        h11 += w[j] * (sine * t1 + cosine * n1)
-        h12 += w[j] * (sine * t2 + cosine * n2)
-        h20 += w[j] * (lt * t0 + ln * n0)
-        h21 += w[j] * (lt * t1 + ln * n1)
-        h22 += w[j] * (lt * t2 + ln * n2)
+        along, across = t0 * sx + t1 * sy, n0 * sx + n1 * sy
+        s2 = along * along + across * across + 1e-60
+        slip = 1.0 / sqrt(s2)
+        inverse = 1.0 / sqrt(s2 + e2)
+        ut, un = along * slip, across * slip
+        rt, rn, rtt, rtn, rnn = _resist(law, ut, un)
+        share, grow = w[j] * s2 * slip * inverse, w[j] * e2 * inverse * inverse * inverse
+        # The direction turns with slip across it, the share grows with slip along it.
+        k = w[j] * inverse
+        dt, dn = k * (rtn * ut - rtt * un), k * rnn * ut
+        tt, tn = grow * rt * ut - dt * un, grow * rt * un + dt * ut
+        nt, nn = grow * rn * ut - dn * un, grow * rn * un + dn * ut
+        g0 += share * (t0 * rt + n0 * rn)
+        g1 += share * (t1 * rt + n1 * rn)
+        g2 += share * (t2 * rt + n2 * rn)
+        along0, along1, along2 = tt * t0 + tn * n0, tt * t1 + tn * n1, tt * t2 + tn * n2
+        across0, across1, across2 = nt * t0 + nn * n0, nt * t1 + nn * n1, nt * t2 + nn * n2
+        h00 += t0 * along0 + n0 * across0
+        h01 += t0 * along1 + n0 * across1
+        h02 += t0 * along2 + n0 * across2
+        h10 += t1 * along0 + n1 * across0
+        h11 += t1 * along1 + n1 * across1
+        h12 += t1 * along2 + n1 * across2
+        h20 += t2 * along0 + n2 * across0
+        h21 += t2 * along1 + n2 * across1
+        h22 += t2 * along2 + n2 * across2
     out[0], out[1], out[2] = g0, g1, g2
     out[3], out[4], out[5] = h00, h01, h02
     out[6], out[7], out[8] = h10, h11, h12
@@ -129,7 +148,7 @@ def _law_sums(kind, law, px, py, vx, vy, tx, ty, w, xi, epsilon, out):  # type: 
 
 
 @njit(cache=True, nogil=True, error_model='numpy')
-def _newton(kind, law, p, w, xi, epsilon, steps, halvings, out, trial):  # type: ignore[no-untyped-def]
+def _newton(kind, law, p, w, xi, epsilon, tolerance, steps, halvings, out, trial):  # type: ignore[no-untyped-def]
     """Damped Newton at one epsilon, in place; True once a full step is below the tolerance."""
     _sums(kind, law, p, w, xi, epsilon, out)
     norm = out[0] ** 2 + out[1] ** 2 + out[2] ** 2
@@ -150,7 +169,7 @@ def _newton(kind, law, p, w, xi, epsilon, steps, halvings, out, trial):  # type:
             return norm < ROUNDING**2
         norm = after
         xi[:] = trial
-        if max(abs(d0), abs(d1), abs(d2)) < STEP_TOLERANCE:
+        if max(abs(d0), abs(d1), abs(d2)) < tolerance:
             return True
     return norm < ROUNDING**2
 
@@ -159,8 +178,13 @@ def _newton(kind, law, p, w, xi, epsilon, steps, halvings, out, trial):  # type:
 def _sums(kind, law, p, w, xi, epsilon, out):  # type: ignore[no-untyped-def]
     if kind == COULOMB:
         _coulomb_sums(p[0], p[1], p[2], p[3], w, xi, epsilon, out)
+    elif kind == ELLIPTIC:
+        _elliptic_sums(law[0], p[0], p[1], p[2], p[3], p[4], p[5], w, xi, epsilon, out)
+    elif kind == LINEAR:
+        ratio = sqrt(law[0])
+        _elliptic_sums(ratio, p[0], p[1], p[2], p[3], p[4], p[5], w, xi, HUGE_EPSILON, out)
     else:
-        _law_sums(kind, law, p[0], p[1], p[2], p[3], p[4], p[5], w, xi, epsilon, out)
+        _granular_sums(law, p[0], p[1], p[2], p[3], p[4], p[5], w, xi, epsilon, out)
 
 
 @njit(cache=True, nogil=True, error_model='numpy', inline='always')
@@ -192,26 +216,74 @@ def balance(kind, law, p, w, xi, out, trial):  # type: ignore[no-untyped-def]
     Returns:
         Whether it converged.
     """
-    if kind == LINEAR:
-        return _newton(kind, law, p, w, xi, 0.0, 3, 1, out, trial)
-    if _newton(kind, law, p, w, xi, LAST_EPSILON, *ATTEMPT, out, trial):
+    if _finish(kind, law, p, w, xi, out, trial):
         return True
-    best, before = np.zeros(3), np.zeros(3)
-    xi[:] = 0.0
-    epsilon = FIRST_EPSILON
-    while epsilon > LAST_EPSILON:
-        done = _newton(kind, law, p, w, xi, epsilon, *STAGE, out, trial)
-        best[:] = xi
-        if done and _newton(kind, law, p, w, xi, LAST_EPSILON, *ATTEMPT, out, trial):
-            return True
-        # A foot that sticks slips in proportion to epsilon: the next guess goes on in line.
-        if epsilon < FIRST_EPSILON:
-            xi[:] = best + REDUCTION * (best - before)
+    smoothed = np.zeros(3)
+    for reduction in REDUCTIONS:
+        smoothed[:] = 0.0
+        epsilon = FIRST_EPSILON
+        while epsilon > LAST_EPSILON:
+            _newton(kind, law, p, w, smoothed, epsilon, 0.1 * epsilon, *STAGE, out, trial)
+            epsilon *= reduction
+            if epsilon < TRY_BELOW:
+                xi[:] = smoothed
+                if _finish(kind, law, p, w, xi, out, trial):
+                    return True
+    return _newton(kind, law, p, w, xi, LAST_EPSILON, STEP_TOLERANCE, *STAGE, out, trial)
+
+
+@njit(cache=True, nogil=True, error_model='numpy')
+def _finish(kind, law, p, w, xi, out, trial):  # type: ignore[no-untyped-def]
+    """Go from a guess to the solution at once: all points slip, or the slowest one sticks."""
+    if _newton(kind, law, p, w, xi, LAST_EPSILON, STEP_TOLERANCE, *ATTEMPT, out, trial):
+        return True
+    return _pivot(kind, law, p, w, xi, out, trial)
+
+
+@njit(cache=True, nogil=True, error_model='numpy')
+def _pivot(kind, law, p, w, xi, out, trial):  # type: ignore[no-untyped-def]
+    """Let the slowest point stick; True, and `xi` in place, if it bears what the others pull."""
+    slowest, least = 0, np.inf
+    for j in range(w.size):
+        slip = hypot(p[2, j] + xi[0] - xi[2] * p[1, j], p[3, j] + xi[1] + xi[2] * p[0, j])
+        if slip < least:
+            slowest, least = j, slip
+    if least > STICKING:
+        return False
+    x, y = p[0, slowest], p[1, slowest]
+    spin = xi[2]
+    for _ in range(PIVOT_STEPS):
+        trial[0], trial[1], trial[2] = spin * y - p[2, slowest], -spin * x - p[3, slowest], spin
+        _sums(kind, law, p, w, trial, LAST_EPSILON, out)
+        slope = y * (y * out[3] - x * out[4] + out[5]) - x * (y * out[6] - x * out[7] + out[8])
+        slope += y * out[9] - x * out[10] + out[11]
+        step = -(y * out[0] - x * out[1] + out[2]) / slope
+        spin += step
+        if abs(step) < STEP_TOLERANCE:
+            if _bears(kind, law, p[4, slowest], p[5, slowest], w[slowest], out[0], out[1]):
+                xi[:] = trial
+                return True
+            return False
+    return False
+
+
+@njit(cache=True, nogil=True, error_model='numpy')
+def _bears(kind, law, tx, ty, w, fx, fy):  # type: ignore[no-untyped-def]
+    """Whether a point at rest bears a force: a law at unit slip is the edge of what it can."""
+    along, across = abs(tx * fx + ty * fy), abs(tx * fy - ty * fx)
+    if kind == COULOMB:
+        return hypot(along, across) <= w
+    if kind == ELLIPTIC:
+        return hypot(along, across / law[0]) <= w
+    low, high = 0.0, 0.5 * pi
+    for _ in range(40):  # the slip whose resistance has the direction of the force
+        psi = 0.5 * (low + high)
+        rt, rn, _, _, _ = _resist(law, cos(psi), sin(psi))
+        if rn * along < rt * across:
+            low = psi
         else:
-            xi[:] = best
-        before[:] = best
-        epsilon *= REDUCTION
-    return _newton(kind, law, p, w, xi, LAST_EPSILON, *STAGE, out, trial)
+            high = psi
+    return hypot(along, across) <= w * hypot(rt, rn)
 
 
 @njit(cache=True, nogil=True, error_model='numpy')

@@ -129,3 +129,50 @@ def test_robot_s_chain_has_its_links_and_its_weight() -> None:
 def test_chain_that_cannot_be_is_refused_by_name(field: str, arguments: tuple) -> None:
     with pytest.raises(BadInputError, match=f'^{field}: '):
         PlanarChain(*arguments)
+
+
+def test_points_over_a_width_have_the_moments_of_a_uniform_rectangle() -> None:
+    chain = PlanarChain([0.3, 0.2], 5.0, 3, width=0.1, points_across=2)
+    share = chain.lengths / chain.lengths.sum()
+    for link, length in enumerate(chain.lengths):
+        of_link = chain.link_of_point == link
+        force, along, side = (
+            v[of_link] for v in (chain.normal_forces, chain.point_offsets, chain.point_sides)
+        )
+        assert force.sum() == pytest.approx(5.0 * share[link])
+        assert force @ along == pytest.approx(0.0, abs=ROUNDING)
+        assert force @ side == pytest.approx(0.0, abs=ROUNDING)
+        assert force @ along**2 / force.sum() == pytest.approx(length**2 / 12.0)
+        assert force @ side**2 / force.sum() == pytest.approx(0.1**2 / 12.0)
+
+
+def test_loads_share_out_the_weight_in_any_unit() -> None:
+    chain = PlanarChain([0.3, 0.2, 0.1], 6.0, loads=[10.0, 20.0, 30.0])
+    per_link = [chain.normal_forces[chain.link_of_point == link].sum() for link in range(3)]
+    assert per_link == pytest.approx([1.0, 2.0, 3.0])
+
+
+def test_points_on_the_side_move_with_their_link() -> None:
+    chain = PlanarChain([0.3, 0.2, 0.1], width=0.1, points_across=3)
+    rng = np.random.default_rng(6)
+    angles, rates, h = rng.uniform(-1.0, 1.0, 2), rng.normal(size=2), 1e-5
+    after, before = (chain.state(angles + s * h * rates, rates).points for s in (1, -1))
+    np.testing.assert_allclose(
+        chain.state(angles, rates).velocities, (after - before) / (2 * h), atol=1e-8
+    )
+
+
+@pytest.mark.parametrize(
+    ('options', 'field'),
+    [
+        ({'loads': [1.0, 1.0]}, 'loads'),
+        ({'loads': [1.0, 0.0, 1.0]}, 'loads'),
+        ({'width': -0.1}, 'width'),
+        ({'width': np.nan}, 'width'),
+        ({'points_across': 0}, 'points_across'),
+    ],
+)
+def test_unusable_width_or_load_is_refused(options: dict, field: str) -> None:
+    with pytest.raises(BadInputError) as caught:
+        PlanarChain([0.3, 0.2, 0.1], **options)
+    assert caught.value.field == field

@@ -137,7 +137,7 @@ def test_an_interrupt_keeps_what_is_finished_and_exits_130(tmp_path: Path) -> No
         start_new_session=True,
     )
     try:
-        deadline = time.monotonic() + 120.0
+        deadline = time.monotonic() + 200.0
         while not list(cache.glob('*.json')):
             assert process.poll() is None and time.monotonic() < deadline
             time.sleep(0.1)

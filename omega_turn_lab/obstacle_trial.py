@@ -9,13 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from omega_turn_lab.studies.tasks import PHYSICS_CODE
-from omega_turn_ros.compliance.admittance import AdmittanceConfig, stored_energy, wave_jacobian
 from omega_turn_ros.compliance.controller import (
     ComplianceConfig,
     ComplianceController,
@@ -32,8 +31,10 @@ from omega_turn_ros.mechanics.chain import PlanarChain
 from omega_turn_ros.mechanics.posture import unbend_heading
 from omega_turn_ros.mechanics.quasi_static import QuasiStatic
 from omega_turn_ros.robot import Robot
-from omega_turn_sim_bridge.simulation import Observation, Simulation, SimulationConfig
 from omega_turn_sim_bridge.terrain_config import TerrainConfig
+
+if TYPE_CHECKING:
+    from omega_turn_sim_bridge.simulation import Observation, Simulation
 
 Array = NDArray[np.float64]
 Result = dict[str, Any]
@@ -42,7 +43,6 @@ READING = 0.01  # [s] between two commands
 STEP_LIMIT = 0.1  # [rad] between two commands, as the gait node's default
 WAIT = 1.0  # [s] at rest before and after the turn
 LONGEST = 3.0  # times the time the cycles take, after which the turn must have ended
-KEPT = 20  # shapes kept per cycle, for pictures
 DEPTH_EVERY = 5  # readings between two looks at how deep contacts are
 
 
@@ -66,6 +66,7 @@ class ObstacleTrial:
         'omega_turn_ros.gaits',
         'omega_turn_ros.compliance',
         'omega_turn_lab.obstacle_trial',
+        'omega_turn_lab.obstacle_log',
     )
     robot: Robot
     gait: WaveGait
@@ -93,11 +94,14 @@ class ObstacleTrial:
             `angle_deg` per cycle (mean), `cycle_angles_deg`, `total_deg`; `largest_effort` [N m];
             `largest_offsets` of (forward, turning) wave [rad]; `limits_broken`, commands and
             offsets outside their limits; `deepest_contact`, how far the body presses into
-            obstacles [m]; `energy`, see `_Log`; and the motion: `time` [s], `poses`
+            obstacles [m]; `energy`, see `TrialLog`; and the motion: `time` [s], `poses`
             x [m], y [m], heading [rad], `yaw_angles` [rad].
         """
+        from omega_turn_lab.obstacle_log import TrialLog
+        from omega_turn_sim_bridge.simulation import Simulation, SimulationConfig
+
         config = SimulationConfig(terrain=self.terrain, seed=self.seed, friction=self.friction)
-        log = _Log(self)
+        log = TrialLog(self)
         with Simulation(self.robot, config) as simulation:
             for seen, output, state, cycles in _readings(self, simulation):
                 log.take(seen, output, state, cycles)
@@ -168,102 +172,3 @@ def _readings(
         if resting > wait:
             return
     raise BadInputError('trial', str(trial), f'a turn that ends within {longest * READING:g} s')
-
-
-class _Log:
-    """What a trial leaves behind.
-
-    The energy balance is that of the law's storage function E = d' M d'/2 + d K d/2: in no step
-    of a cycle may E grow by more than the work of the force scale J tau_ext on the offsets.
-    Between cycles offsets relax at a given rate, not by the law.
-    """
-
-    def __init__(self, trial: ObstacleTrial) -> None:
-        self._trial = trial
-        self._every = round(trial.period / READING / KEPT)
-        self._headings: list[float] = []
-        self._kept: list[Observation] = []
-        self.count = self._cycles = 0
-        self.depth = 0.0
-        self._effort = 0.0
-        self._offset = np.zeros(2)
-        self._broken = 0
-        self._command: Array | None = None
-        self._phases: tuple[float, float] | None = None
-        self._energy = 0.0
-        self._work = 0.0
-        self._peak_energy = 0.0
-        self._excess = 0.0
-
-    def take(
-        self,
-        seen: Observation,
-        output: Output | None,
-        state: ComplianceState | None,
-        cycles: int,
-    ) -> None:
-        if not self._headings:
-            self._headings = [float(seen.pose[2])]
-        if cycles > self._cycles:
-            self._headings.append(float(seen.pose[2]))
-            self._cycles = cycles
-        if self.count % self._every == 0:
-            self._kept.append(seen)
-        self.count += 1
-        self._last = seen
-        self._effort = max(self._effort, float(np.abs(seen.efforts).max()))
-        if state is not None and self._trial.compliance is not None:
-            self._balance(state, self._trial.compliance)
-        if output is not None:
-            self._check_command(output.positions)
-            playing = output.phase_rate > 0.0
-            self._phases = (output.phase_forward, output.phase_turning) if playing else None
-
-    def _check_command(self, command: Array) -> None:
-        robot = self._trial.robot
-        reach = min(robot.velocity_limit * READING, STEP_LIMIT) + 1e-9
-        self._broken += int((np.abs(command) > robot.position_limit + 1e-9).any())
-        if self._command is not None:
-            self._broken += int((np.abs(command - self._command) > reach).any())
-        self._command = command
-
-    def _balance(self, state: ComplianceState, config: ComplianceConfig) -> None:
-        offset, rate = (np.array(x) for x in (state.admittance.offset, state.admittance.rate))
-        law: AdmittanceConfig = config.law
-        self._offset = np.maximum(self._offset, np.abs(offset))
-        self._broken += int((np.abs(offset) > law.offset_limit + 1e-9).any())
-        self._broken += int((np.abs(rate) > law.rate_limit + 1e-9).any())
-        energy = stored_energy(state.admittance, law)
-        work = 0.0
-        if self._phases is not None:
-            gait = self._trial.gait
-            jacobian = wave_jacobian(*self._phases, gait.k_f, gait.k_t, self._trial.robot.n_yaw)
-            force = np.array(config.torque_scale) * (jacobian @ state.external)
-            work = float(force @ rate) * READING
-            self._excess = max(self._excess, energy - self._energy - work)
-        self._work += work
-        self._energy = energy
-        self._peak_energy = max(self._peak_energy, energy)
-
-    def result(self) -> Result:
-        # The last cycle ends where the robot rests after it.
-        headings = np.degrees([*self._headings[:-1], self._last.pose[2]])
-        yaw = self._trial.robot.yaw_indices
-        turned = float(headings[-1] - headings[0])
-        return {
-            'angle_deg': turned / self._trial.cycles,
-            'cycle_angles_deg': np.diff(headings).round(6).tolist(),
-            'total_deg': turned,
-            'largest_effort': self._effort,
-            'largest_offsets': self._offset.round(6).tolist(),
-            'limits_broken': self._broken,
-            'deepest_contact': self.depth,
-            'energy': {
-                'work': self._work,
-                'peak': self._peak_energy,
-                'largest_excess': self._excess,
-            },
-            'time': [round(seen.time, 6) for seen in self._kept],
-            'poses': [seen.pose.round(6).tolist() for seen in self._kept],
-            'yaw_angles': [seen.positions[yaw].round(6).tolist() for seen in self._kept],
-        }

@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 CORNERS = 24  # of each rock before the hull is taken
 SPREAD = 0.2  # standard deviation of the sizes, relative
 FLATNESS = (1.0, 0.85, 0.65)  # axes of the mean rock, relative to each other
-LAYERS = 2
+LAYERS = 5  # of loose grids dropped; about two once they lie
 SETTLE_TIME = 4.0  # [s] given to the pile
 SETTLE_STEP = 1.0 / 120.0  # [s]
 ROCK_COLOURS = ((0.55, 0.52, 0.48, 1.0), (0.45, 0.44, 0.42, 1.0), (0.62, 0.58, 0.52, 1.0))
@@ -119,7 +119,7 @@ def _drop_places(size: float, extent: float, rng: np.random.Generator) -> Array:
     places = []
     for layer in range(LAYERS):
         jitter = rng.uniform(-0.1, 0.1, (2, x.size)) * size
-        z = np.full(x.size, (0.8 + 1.5 * layer) * size)
+        z = np.full(x.size, (0.8 + 1.3 * layer) * size)
         places.append(np.stack([x + jitter[0], y + jitter[1], z], axis=-1))
     return np.concatenate(places)
 

@@ -42,7 +42,8 @@ def build_ground(
     """
     level = _level(client)
     if config.kind == 'pegboard':
-        from omega_turn_sim_bridge.pegboard import build_pegs, peg_positions
+        from omega_turn_sim_bridge.peg_lattice import peg_positions
+        from omega_turn_sim_bridge.pegboard import build_pegs
 
         pegs = build_pegs(client, peg_positions(config, robot, seed), config, friction)
         return Ground((level, *pegs), has_obstacles=True)

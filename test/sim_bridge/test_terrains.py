@@ -14,7 +14,7 @@ from scene import body_centres
 from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.resources import config_names
 from omega_turn_ros.robot import Robot, load_robot
-from omega_turn_sim_bridge.pegboard import peg_positions
+from omega_turn_sim_bridge.peg_lattice import peg_positions
 from omega_turn_sim_bridge.simulation import Simulation, SimulationConfig
 from omega_turn_sim_bridge.terrain_config import KINDS, TerrainConfig, load_terrain
 

@@ -52,7 +52,13 @@ def build_ground(
 
         size, extent = (x * robot.length for x in (config.rock_size_bl, config.extent_bl))
         rocks = build_rocks(client, settled_pile(size, extent, seed), config, friction)
-        return Ground((level, *rocks), has_obstacles=True, top=_top_under(client, robot))
+        top = _top_under(client, robot)
+        if config.rock_relief_bl > 0.0:
+            soil = max(0.0, top - config.rock_relief_bl * robot.length)
+            pybullet.resetBasePositionAndOrientation(
+                level, (0, 0, soil), (0, 0, 0, 1), physicsClientId=client
+            )
+        return Ground((level, *rocks), has_obstacles=True, top=top)
     return Ground((level,))
 
 

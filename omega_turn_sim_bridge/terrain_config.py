@@ -26,6 +26,8 @@ class TerrainConfig:
         peg_friction: coefficient between body and peg.
         clearance: least gap between straight robot and pegs at the start [m].
         rock_size_bl: mean diameter of the rocks [BL].
+        rock_relief_bl: soil fills the pile up to this far below its highest rock under the robot
+            [BL]; 0 leaves the gaps open down to the ground.
         rock_friction: coefficient between body and rock.
     """
 
@@ -37,6 +39,7 @@ class TerrainConfig:
     peg_friction: float = 0.2
     clearance: float = 0.01
     rock_size_bl: float = 0.3
+    rock_relief_bl: float = 0.08
     rock_friction: float = 0.5
 
     def __post_init__(self) -> None:
@@ -44,7 +47,7 @@ class TerrainConfig:
         if self.kind not in KINDS:
             raise BadInputError('terrain kind', self.kind, f'one of {KINDS}')
         lengths = ('extent_bl', 'spacing_bl', 'peg_radius', 'peg_height', 'rock_size_bl')
-        for field in (*lengths, 'peg_friction', 'clearance', 'rock_friction'):
+        for field in (*lengths, 'peg_friction', 'clearance', 'rock_relief_bl', 'rock_friction'):
             value = getattr(self, field)
             number = isinstance(value, (int, float)) and not isinstance(value, bool)
             if not number or not math.isfinite(value) or value < 0.0:

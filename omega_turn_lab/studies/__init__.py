@@ -9,6 +9,8 @@ NAMES = (
     'frequency',
     'joints',
     'granular',
+    'pegboard',
+    'rocks',
     'height',
     'sensitivity',
     'beyond',

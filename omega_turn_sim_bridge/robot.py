@@ -15,7 +15,7 @@ STANCE = 0.005  # [m] feet alternate left and right of the axis by this, or the 
 # so a foot's force leaves the direction of its slip where the body yields unevenly (46 deg off for
 # bare boxes, an offset turn 9 % short); inertia far above the box's own evens that out.
 REFLECTED_INERTIA = 0.01
-CAPSULE_LIFT = 0.002  # [m] of solid bodies, out of reach of contact search with level ground
+SOLID_LIFT = 0.002  # [m] of solid bodies, out of reach of contact search with level ground
 
 
 def ride_height(robot: Robot) -> float:
@@ -23,7 +23,7 @@ def ride_height(robot: Robot) -> float:
     return 0.5 * robot.module_width + FOOT_CLEARANCE
 
 
-def urdf_from_robot(robot: Robot, solid: bool = False) -> str:
+def urdf_from_robot(robot: Robot, solid: str = '') -> str:
     """Describe the robot as a chain of boxes, head first, each on two spheres per module length.
 
     The spheres sit at the Gauss nodes of their module, so they load the ground as a uniform line
@@ -31,7 +31,8 @@ def urdf_from_robot(robot: Robot, solid: bool = False) -> str:
 
     Args:
         robot: the robot.
-        solid: give each body a capsule to collide with, too; on level ground feet are enough.
+        solid: what each body collides with besides its feet: '' nothing, enough on level ground;
+            'round' capsules, smooth along upright pegs; 'square' boxes, which lie without rolling.
 
     Returns:
         URDF text. Link `head`, then `module_1`.. named after the joint in front of each.
@@ -45,7 +46,7 @@ def urdf_from_robot(robot: Robot, solid: bool = False) -> str:
         ET.SubElement(ET.SubElement(root, 'material', name=name), 'color', rgba=rgba)
     head = _add_body(root, robot, 'head', robot.head_length, 0.5 * robot.head_length, 'head', 0)
     if solid:
-        _add_capsule(head, robot, (0.0, robot.head_length - 0.5 * robot.module_width))
+        _add_solid(head, robot, (0.0, robot.head_length), (False, True), solid)
     parent, joint_x = 'head', 0.0
     for i, (name, axis) in enumerate(zip(robot.joint_names, robot.joint_axes)):
         child = f'module_{i + 1}'
@@ -54,8 +55,7 @@ def urdf_from_robot(robot: Robot, solid: bool = False) -> str:
         body = _add_body(root, robot, child, robot.module_length, middle, colour, i)
         if solid:
             last = i == robot.n_joints - 1
-            tip = 0.5 * robot.module_width if last else 0.0
-            _add_capsule(body, robot, (tip - robot.module_length, 0.0))
+            _add_solid(body, robot, (-robot.module_length, 0.0), (last, False), solid)
         joint = ET.SubElement(root, 'joint', name=name, type='revolute')
         ET.SubElement(joint, 'parent', link=parent)
         ET.SubElement(joint, 'child', link=child)
@@ -117,11 +117,27 @@ def _add_body(
     return link
 
 
-def _add_capsule(link: ET.Element, robot: Robot, axis: tuple[float, float]) -> None:
-    """Make a body solid: round about its axis, which runs from x to x [m], and at both ends."""
+def _add_solid(
+    link: ET.Element,
+    robot: Robot,
+    along: tuple[float, float],
+    is_tip: tuple[bool, bool],
+    solid: str,
+) -> None:
+    """Make a body solid from x to x [m]; round ends reach half around joints, none past a tip."""
     collision = ET.SubElement(link, 'collision')
-    origin = ET.SubElement(collision, 'origin', xyz=f'{sum(axis) / 2} 0 {CAPSULE_LIFT}')
-    origin.set('rpy', f'0 {math.pi / 2} 0')
-    capsule = ET.SubElement(ET.SubElement(collision, 'geometry'), 'capsule')
-    capsule.set('radius', str(0.5 * robot.module_width))
-    capsule.set('length', str(axis[1] - axis[0]))
+    geometry = ET.SubElement(collision, 'geometry')
+    width = robot.module_width
+    if solid == 'square':
+        origin = f'{sum(along) / 2} 0 {SOLID_LIFT}'
+        ET.SubElement(collision, 'origin', xyz=origin)
+        box = ET.SubElement(geometry, 'box')
+        box.set('size', f'{along[1] - along[0]} {width} {width}')
+        return
+    back = along[0] + 0.5 * width * is_tip[0]
+    front = along[1] - 0.5 * width * is_tip[1]
+    origin = f'{(back + front) / 2} 0 {SOLID_LIFT}'
+    ET.SubElement(collision, 'origin', xyz=origin, rpy=f'0 {math.pi / 2} 0')
+    capsule = ET.SubElement(geometry, 'capsule')
+    capsule.set('radius', str(0.5 * width))
+    capsule.set('length', str(front - back))

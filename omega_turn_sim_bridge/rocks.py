@@ -17,10 +17,15 @@ from omega_turn_sim_bridge.terrain_config import TerrainConfig
 Array = NDArray[np.float64]
 
 CORNERS = 24  # of each rock before the hull is taken
-SPREAD = 0.2  # standard deviation of the sizes, relative
-FLATNESS = (1.0, 0.85, 0.65)  # axes of the mean rock, relative to each other
-LAYERS = 3  # of loose grids dropped; little more than one once they lie
-SETTLE_TIME = 4.0  # [s] given to the pile
+SPREAD = 0.12  # standard deviation of the sizes, relative
+FLATNESS = (
+    1.05,
+    0.95,
+    0.65,
+)  # axes of the mean rock over its diameter: rocks lie on the flat side
+PACKING = 0.8  # distance of neighbours before they fall, over the mean diameter
+TILT = 0.3  # [rad] standard deviation of the slant they are dropped at
+SETTLE_TIME = 3.0  # [s] given to the pile
 SETTLE_STEP = 1.0 / 120.0  # [s]
 ROCK_COLOURS = ((0.55, 0.52, 0.48, 1.0), (0.45, 0.44, 0.42, 1.0), (0.62, 0.58, 0.52, 1.0))
 
@@ -42,7 +47,7 @@ class RockPile:
 
 @lru_cache(maxsize=4)
 def settled_pile(size: float, extent: float, seed: int) -> RockPile:
-    """Drop rocks layer by layer into a pen around the origin and let them come to rest.
+    """Drop a layer of rocks, side by side, into a pen around the origin and let them come to rest.
 
     The physics of the pile runs in a client of its own, so the robot's starts clean.
 
@@ -63,8 +68,7 @@ def settled_pile(size: float, extent: float, seed: int) -> RockPile:
         for place in _drop_places(size, extent, rng):
             rock = _random_rock(size, rng)
             corners.append(rock)
-            turn = rng.normal(size=4)
-            bodies.append(_drop(client, rock, place, turn / np.linalg.norm(turn)))
+            bodies.append(_drop(client, rock, place, _random_turn(rng)))
         for _ in range(round(SETTLE_TIME / SETTLE_STEP)):
             pybullet.stepSimulation(physicsClientId=client)
         poses = [pybullet.getBasePositionAndOrientation(b, physicsClientId=client) for b in bodies]
@@ -104,24 +108,33 @@ def _random_rock(size: float, rng: np.random.Generator) -> tuple[tuple[float, fl
     """Corners of a convex rock: points on an ellipsoid of random size."""
     points = rng.normal(size=(CORNERS, 3))
     points /= np.linalg.norm(points, axis=1, keepdims=True)
-    axes = np.array(FLATNESS) / np.mean(FLATNESS)
-    diameter = size * float(np.clip(rng.normal(1.0, SPREAD), 0.6, 1.4))
-    points *= 0.5 * diameter * axes
+    diameter = size * float(np.clip(rng.normal(1.0, SPREAD), 0.7, 1.3))
+    points *= 0.5 * diameter * np.array(FLATNESS)
     points -= points.mean(axis=0)
     return tuple((float(x), float(y), float(z)) for x, y, z in points)
 
 
 def _drop_places(size: float, extent: float, rng: np.random.Generator) -> Array:
-    """Centres of the rocks before they fall [m], shape (n, 3): jittered grids, one per layer."""
-    per_side = max(1, math.floor(2.0 * extent / (1.15 * size)))
-    grid = (np.arange(per_side) + 0.5) / per_side * 2.0 * extent - extent
-    x, y = (a.ravel() for a in np.meshgrid(grid, grid))
-    places = []
-    for layer in range(LAYERS):
-        jitter = rng.uniform(-0.1, 0.1, (2, x.size)) * size
-        z = np.full(x.size, (0.8 + 1.3 * layer) * size)
-        places.append(np.stack([x + jitter[0], y + jitter[1], z], axis=-1))
-    return np.concatenate(places)
+    """Centres of the rocks before they fall [m], shape (n, 3): a jittered hexagonal lattice.
+
+    Neighbours start at three heights, so that they fall past each other and not into each other.
+    """
+    step = PACKING * size
+    count = math.ceil(extent / step) + 1
+    i, j = np.mgrid[-2 * count : 2 * count + 1, -2 * count : 2 * count + 1].reshape(2, -1)
+    x, y = step * (i + 0.5 * j), step * math.sqrt(0.75) * j
+    inside = (np.abs(x) < extent - 0.45 * size) & (np.abs(y) < extent - 0.45 * size)
+    places = np.stack([x, y, size * (0.5 + 0.9 * ((i - j) % 3))], axis=-1)[inside]
+    places[:, :2] += rng.uniform(-0.06, 0.06, (len(places), 2)) * size
+    return places
+
+
+def _random_turn(rng: np.random.Generator) -> tuple[float, float, float, float]:
+    """Any way round, a little aslant: quaternion x, y, z, w."""
+    roll, pitch = rng.normal(0.0, TILT, 2)
+    yaw = rng.uniform(-math.pi, math.pi)
+    x, y, z, w = pybullet.getQuaternionFromEuler((float(roll), float(pitch), float(yaw)))
+    return x, y, z, w
 
 
 def _build_pen(client: int, extent: float) -> None:
@@ -136,13 +149,13 @@ def _build_pen(client: int, extent: float) -> None:
         )
 
 
-def _drop(client: int, corners: Sequence[Sequence[float]], place: Array, turn: Array) -> int:
+def _drop(
+    client: int, corners: Sequence[Sequence[float]], place: Array, turn: Sequence[float]
+) -> int:
     shape = pybullet.createCollisionShape(
         pybullet.GEOM_MESH, vertices=corners, physicsClientId=client
     )
-    rock = pybullet.createMultiBody(
-        10.0, shape, -1, place.tolist(), turn.tolist(), physicsClientId=client
-    )
+    rock = pybullet.createMultiBody(10.0, shape, -1, place.tolist(), turn, physicsClientId=client)
     pybullet.changeDynamics(
         rock, -1, lateralFriction=0.8, rollingFriction=0.02, physicsClientId=client
     )

@@ -334,13 +334,13 @@ class Simulation:
             client, config.terrain, self.robot, config.friction, config.seed
         )
         flags = pybullet.URDF_USE_INERTIA_FROM_FILE
-        if self._ground.has_obstacles:
+        if self._ground.solid:
             # What an obstacle bends beyond the gait must not pass through itself.
             flags |= pybullet.URDF_USE_SELF_COLLISION
             flags |= pybullet.URDF_USE_SELF_COLLISION_EXCLUDE_PARENT
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / f'{self.robot.name}.urdf'
-            path.write_text(urdf_from_robot(self.robot, solid=self._ground.has_obstacles))
+            path.write_text(urdf_from_robot(self.robot, solid=self._ground.solid))
             self._body = pybullet.loadURDF(str(path), flags=flags, physicsClientId=client)
         for link in range(-1, self.robot.n_joints):
             pybullet.changeDynamics(

@@ -16,12 +16,12 @@ class Ground:
 
     Attributes:
         bodies: PyBullet's ids; the level ground first.
-        has_obstacles: something touches the robot elsewhere than under its feet.
+        solid: bodies the robot needs to meet what lies there, see `urdf_from_robot`.
         top: height of the highest thing the straight robot can come to lie on [m].
     """
 
     bodies: tuple[int, ...]
-    has_obstacles: bool = False
+    solid: str = ''
     top: float = 0.0
 
 
@@ -46,7 +46,7 @@ def build_ground(
         from omega_turn_sim_bridge.pegboard import build_pegs
 
         pegs = build_pegs(client, peg_positions(config, robot, seed), config, friction)
-        return Ground((level, *pegs), has_obstacles=True)
+        return Ground((level, *pegs), solid='round')
     if config.kind == 'rocks':
         from omega_turn_sim_bridge.rocks import build_rocks, settled_pile
 
@@ -58,7 +58,7 @@ def build_ground(
             pybullet.resetBasePositionAndOrientation(
                 level, (0, 0, soil), (0, 0, 0, 1), physicsClientId=client
             )
-        return Ground((level, *rocks), has_obstacles=True, top=top)
+        return Ground((level, *rocks), solid='square', top=top)
     return Ground((level,))
 
 

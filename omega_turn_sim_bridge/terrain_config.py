@@ -39,7 +39,7 @@ class TerrainConfig:
     peg_friction: float = 0.2
     clearance: float = 0.01
     rock_size_bl: float = 0.3
-    rock_relief_bl: float = 0.08
+    rock_relief_bl: float = 0.05
     rock_friction: float = 0.5
 
     def __post_init__(self) -> None:

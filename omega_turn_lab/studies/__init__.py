@@ -10,7 +10,6 @@ NAMES = (
     'joints',
     'granular',
     'pegboard',
-    'rocks',
     'height',
     'sensitivity',
     'beyond',

@@ -1,7 +1,7 @@
-"""Parameters the shipped gaits start from, designed off-line on the paper's robot.
+"""Gaits with rounded parameters, designed elsewhere on the paper's robot: a fixed yardstick.
 
 Each was optimised for the largest angle per cycle under its joint limit with N = 8, k_f = 1.5,
-14 cm links, isotropic Coulomb friction; `omega_turn calibrate` fits and calibrates them.
+14 cm links, isotropic Coulomb friction.
 """
 
 from __future__ import annotations

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import math
+import signal
 import sys
 from pathlib import Path
 
@@ -14,6 +16,7 @@ from omega_turn_ros.errors import OmegaTurnError
 def main(arguments: list[str] | None = None) -> int:
     """Run `omega_turn`; return the exit code: 0 done, 1 failed, 2 bad input, 130 interrupted."""
     options = _parser().parse_args(arguments)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # ends as Ctrl-C does
     try:
         return int(options.run(options))
     except KeyboardInterrupt:
@@ -54,8 +57,10 @@ def _add_demo(parser: argparse.ArgumentParser) -> None:
 def _add_turn(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--deg', type=_angle, required=True, help='+ = counter-clockwise')
     parser.add_argument('--namespace', default='', help='of the gait node')
-    parser.add_argument('--domain-id', type=int, default=None, help='default: ROS_DOMAIN_ID or 0')
-    parser.add_argument('--timeout', type=float, default=10.0, help='for the gait node [s]')
+    parser.add_argument(
+        '--domain-id', type=_domain, default=None, help='default: ROS_DOMAIN_ID or 0'
+    )
+    parser.add_argument('--timeout', type=_seconds, default=10.0, help='for the gait node [s]')
     parser.set_defaults(run=_run_turn)
 
 
@@ -64,7 +69,12 @@ def _add_design(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--all', action='store_true', help='design the whole library')
     parser.add_argument('--k-f', type=float, default=1.5, help='waves of the forward wave')
     parser.add_argument('--k-t', type=float, default=1.0, help='waves of the turning wave')
-    parser.add_argument('--theta-max-deg', type=_angle, default=90.0, help='joint limit [deg]')
+    parser.add_argument(
+        '--theta-max-deg',
+        type=_angle,
+        default=None,
+        help="joint limit [deg]; default: 90, or the robot's own if that is less",
+    )
     parser.add_argument(
         '--method',
         default='direct',
@@ -72,7 +82,7 @@ def _add_design(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument('--name', default='', help='of the gait file; made of the rest if absent')
     parser.add_argument('--seed', type=int, default=0)
-    parser.add_argument('--out', type=Path, default=Path('config/gaits'), help='folder to write')
+    parser.add_argument('--out', type=Path, default=Path('gaits'), help='folder to write')
     parser.set_defaults(run=_run_design)
 
 
@@ -95,10 +105,34 @@ def _add_reproduce(parser: argparse.ArgumentParser) -> None:
 
 
 def _angle(text: str) -> float:
-    value = float(text)
-    if not abs(value) < 1e6:
-        raise argparse.ArgumentTypeError(f'{text}: expected a finite angle [deg]')
+    value = _number(text, 'a number [deg]')
+    if abs(value) >= 1e6:
+        raise argparse.ArgumentTypeError(f'{text}: expected less than 1e6 deg')
     return value
+
+
+def _seconds(text: str) -> float:
+    expected = 'a time > 0 [s]'
+    value = _number(text, expected)
+    if not 0.0 < value < math.inf:
+        raise argparse.ArgumentTypeError(f'{text}: expected {expected}')
+    return value
+
+
+def _number(text: str, expected: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if math.isnan(value):
+        raise argparse.ArgumentTypeError(f'{text}: expected {expected}')
+    return value
+
+
+def _domain(text: str) -> int:
+    if not text.isdecimal() or int(text) > 232:
+        raise argparse.ArgumentTypeError(f'{text}: expected 0..232')
+    return int(text)
 
 
 def _run_demo(options: argparse.Namespace) -> int:
@@ -135,7 +169,8 @@ def _run_design(options: argparse.Namespace) -> int:
     if options.all:
         recipes = [within_limits(recipe, robot) for recipe in CATALOGUE]
         return run_design(robot, recipes, options.seed, options.out)
-    k_f, k_t, limit = options.k_f, options.k_t, options.theta_max_deg
+    k_f, k_t = options.k_f, options.k_t
+    limit = options.theta_max_deg or min(90.0, math.degrees(robot.position_limit))
     name = options.name or f'k{k_f:g}_{k_t:g}_{limit:g}deg_{options.method}'.replace('.', 'p')
     text = f'k_f = {k_f:g}, k_t = {k_t:g}, joint limit {limit:g} deg, {options.method}'
     recipe = Recipe(name, text, k_f, k_t, limit, options.method)

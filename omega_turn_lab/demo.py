@@ -20,6 +20,7 @@ from tqdm import tqdm
 
 import omega_turn_lab.ros_environment  # noqa: F401  (first: it may restart the interpreter)
 from omega_turn_lab.animation import animate_turn
+from omega_turn_lab.folder import make_folder
 from omega_turn_lab.live import NodeError, Observer, Stack, wait_until
 from omega_turn_lab.pictures import draw_turn
 from omega_turn_lab.recording import BagRecorder
@@ -97,7 +98,7 @@ def run_demo(options: DemoOptions) -> int:
     gait, robot = load_gait(options.gait), load_robot(options.robot)
     commanded = math.radians(options.turn_deg)
     predicted = plan_turn(commanded, gait.calibration).angle
-    options.out.mkdir(parents=True, exist_ok=True)
+    make_folder(options.out)
     with Stack(demo_domain()) as stack:
         outcome = _play(stack, options, commanded)
     record = outcome.record

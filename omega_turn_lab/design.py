@@ -9,6 +9,7 @@ from pathlib import Path
 import yaml
 from tqdm import tqdm
 
+from omega_turn_lab.folder import make_folder
 from omega_turn_ros.design.catalogue import Recipe, design_recipe
 from omega_turn_ros.design.problem import Design
 from omega_turn_ros.gaits.library import LibraryGait, gait_to_mapping
@@ -19,10 +20,10 @@ def run_design(robot: Robot, recipes: Sequence[Recipe], seed: int, out: Path) ->
     """Write one file per recipe into `out`; return 0.
 
     Raises:
-        BadInputError: a recipe is out of the robot's range.
+        BadInputError: a recipe is out of the robot's range, or the folder cannot be written to.
     """
-    out.mkdir(parents=True, exist_ok=True)
-    lines = []
+    make_folder(out)
+    lines, entries = [], []
     for recipe in tqdm(recipes, desc='designing', unit='gait'):
         design, entry = design_recipe(recipe, robot, seed)
         text = yaml.safe_dump(
@@ -31,8 +32,18 @@ def run_design(robot: Robot, recipes: Sequence[Recipe], seed: int, out: Path) ->
         path = out / f'{recipe.name}.yaml'
         path.write_text(text)
         lines.append(_account(design, entry, path))
+        entries.append(entry)
     print('\n'.join(lines))
+    if len(entries) > 1:
+        most = max(entries, key=lambda entry: entry.calibration.largest_angle)
+        fastest = max(entries, key=_speed)
+        print(f'most turn per cycle: {most.name}; per second at equal joint speed: {fastest.name}')
     return 0
+
+
+def _speed(entry: LibraryGait) -> float:
+    """Heading per peak joint travel [rad/rad], as `turning_speed`."""
+    return entry.calibration.largest_angle / (2.0 * math.pi * entry.calibration.peak_rate)
 
 
 def _account(design: Design, entry: LibraryGait, path: Path) -> str:
@@ -41,7 +52,7 @@ def _account(design: Design, entry: LibraryGait, path: Path) -> str:
         f'{entry.name}: {math.degrees(design.angle):.1f} deg per cycle, largest joint angle '
         f'{math.degrees(entry.theta_max):.1f} deg, clears itself by {1e3 * design.clearance:.1f} '
         f'mm\n  {parameters}\n  {design.method}: {design.agreeing} of {design.starts} starts '
-        f'within 1 % of the best, {design.evaluations} cycles integrated, stopped by '
+        f'within 5 % of the best, {design.evaluations} cycles integrated, stopped by '
         f'{design.reason}\n  written to {path}'
     )
 

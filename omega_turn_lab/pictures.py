@@ -39,7 +39,8 @@ STYLE: dict[Any, Any] = {
     'xtick.direction': 'out',
     'ytick.direction': 'out',
 }
-SNAPSHOTS = 8
+SNAPSHOTS = 5  # more of a turn in place hide each other
+PALE = 0.3  # share of its colour in a body between start and end
 
 
 def draw_turn(record: RunRecord, robot: Robot, command_deg: float, path: Path) -> None:
@@ -81,10 +82,9 @@ def draw_turn(record: RunRecord, robot: Robot, command_deg: float, path: Path) -
         figure.savefig(path)
 
 
-def _degrees(value: float, digits: int = 1) -> str:
-    """Print an angle [deg] with at most `digits` decimals, no '-0' and a true minus sign."""
-    text = f'{round(float(value), digits) + 0.0:.{digits}f}'
-    text = text.rstrip('0').rstrip('.') if '.' in text else text
+def _degrees(value: float) -> str:
+    """Print an angle [deg] without '-0' and with a true minus sign."""
+    text = f'{round(float(value), 1) + 0.0:.1f}'
     return text.replace('-', '\N{MINUS SIGN}') + '°'
 
 
@@ -114,9 +114,11 @@ def _draw_bodies(
 
     colours, scale = _colours(record.time)
     ends = {0: 'start', len(record.time) - 1: 'end'}
-    for index in chosen:
+    for place, index in enumerate(chosen):
         colour = colours(scale(record.time[index]))
-        _draw_body(axes, outlines[index], robot.module_width, colour, solid=index in ends)
+        solid = index in ends
+        order = 3.0 if solid else 2.0 + 0.1 * place  # the later covers the earlier
+        _draw_body(axes, outlines[index], robot.module_width, colour, solid, order)
     for index, word in ends.items():
         colour = colours(scale(record.time[index]))
         _draw_heading_arrow(axes, record.pose[index], 0.62 * robot.length, colour, word)
@@ -133,7 +135,9 @@ def _draw_bodies(
     axes.set_title('from above; colour is time, see the dots at right', loc='left', color='0.4')
 
 
-def _draw_body(axes: Axes, outline: Array, width: float, colour: Any, solid: bool) -> None:
+def _draw_body(
+    axes: Axes, outline: Array, width: float, colour: Any, solid: bool, order: float
+) -> None:
     """One body in its true width: solid with a white eye, or pale with its axis and a head dot."""
     from matplotlib.patches import Circle, PathPatch
     from matplotlib.path import Path as Shape
@@ -142,20 +146,20 @@ def _draw_body(axes: Axes, outline: Array, width: float, colour: Any, solid: boo
     centre = tip + 0.5 * width * _unit(joint - tip)
     # One path for all links: where they overlap the paint does not double.
     body = Shape.make_compound_path(*(Shape(p, closed=True) for p in _closed(outline, width)))
-    order = 3.0 if solid else 2.0
-    if solid:
-        axes.add_patch(PathPatch(body, facecolor='w', edgecolor='w', linewidth=1.6, zorder=order))
-    else:
+    # Opaque, with a white rim: bodies that cross stay apart where glass would make a tangle.
+    axes.add_patch(PathPatch(body, facecolor='w', edgecolor='w', linewidth=1.6, zorder=order))
+    paint = np.array(colour[:3])
+    if not solid:
         tail = outline[-1] + 0.5 * width * _unit(outline[-2] - outline[-1])
         spine = np.vstack([centre, outline[1:-1], tail])
-        axes.plot(*spine.T, color=colour, linewidth=0.9, zorder=order)
-    opacity = 1.0 if solid else 0.26
-    fill = PathPatch(body, facecolor=colour, linewidth=0, alpha=opacity, zorder=order)
+        axes.plot(*spine.T, color=colour, linewidth=0.9, zorder=order + 0.02)
+        paint = 1.0 - PALE * (1.0 - paint)
+    fill = PathPatch(body, facecolor=tuple(paint), linewidth=0, zorder=order + 0.01)
     fill.set_snap(False)  # or corners jump to whole pixels and the joints show as bumps
     axes.add_patch(fill)
     dot = 'w' if solid else colour
     axes.add_patch(
-        Circle(tuple(centre), 0.27 * width, facecolor=dot, linewidth=0, zorder=order + 0.1)
+        Circle(tuple(centre), 0.27 * width, facecolor=dot, linewidth=0, zorder=order + 0.03)
     )
 
 

@@ -9,47 +9,22 @@ import sys
 import threading
 import time
 from collections.abc import Callable
-from typing import Any
 
 import rclpy
 from rclpy.context import Context
+from rclpy.exceptions import InvalidNamespaceException
 from rclpy.executors import SingleThreadedExecutor
-from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
-from std_msgs.msg import Float64
 from tqdm import tqdm
 
 import omega_turn_lab.ros_environment  # noqa: F401  (first: it may restart the interpreter)
 from omega_turn_lab.live import NodeError
-from omega_turn_ros.nodes.qos import LATCHED, REQUEST
+from omega_turn_lab.turn_client import TurnClient
+from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.nodes.runner import ENDINGS
 
-
-class TurnClient(Node):
-    """Publishes one turn and follows `turn_remaining`.
-
-    Args:
-        context: rclpy context.
-        options: passed on to `rclpy.node.Node`.
-    """
-
-    def __init__(self, context: Context, **options: Any) -> None:
-        super().__init__('omega_turn_client', context=context, **options)
-        self.remaining: float | None = None
-        self._publisher = self.create_publisher(Float64, 'turn_angle', REQUEST)
-        self.create_subscription(Float64, 'turn_remaining', self._on_remaining, LATCHED)
-
-    @property
-    def connected(self) -> bool:
-        """Whether a gait node listens and has spoken."""
-        return self.count_subscribers('turn_angle') > 0 and self.remaining is not None
-
-    def send(self, angle: float) -> None:
-        """Publish a turn [rad]."""
-        self._publisher.publish(Float64(data=angle))
-
-    def _on_remaining(self, message: Float64) -> None:
-        self.remaining = message.data
+# [deg] left at an end that was meant: twice the gait node's usual heading_tolerance.
+MEANT = 2.0
 
 
 def run_turn(deg: float, namespace: str, domain_id: int | None, timeout: float) -> int:
@@ -65,37 +40,78 @@ def run_turn(deg: float, namespace: str, domain_id: int | None, timeout: float) 
         0 when the turn has ended, 130 when Ctrl-C ended it.
 
     Raises:
-        NodeError: no gait node, or it did not accept the turn.
+        BadInputError: the namespace is none.
+        NodeError: no gait node, it did not accept the turn, or the turn ended early.
     """
     context = Context()
     rclpy.init(
         context=context, domain_id=domain_id, signal_handler_options=SignalHandlerOptions.NO
     )
-    client = TurnClient(context, namespace=namespace)
-    executor = SingleThreadedExecutor(context=context)
-    executor.add_node(client)
     # A flag, not KeyboardInterrupt: that would break into the middle of rclpy.
     interrupted = threading.Event()
     old = {s: signal.signal(s, lambda *_: interrupted.set()) for s in ENDINGS}
     try:
-        _wait(executor, lambda: client.connected, timeout, _missing(domain_id), interrupted)
-        client.send(math.radians(deg))
-        if deg != 0.0:
-            what = 'the gait node to accept the turn (stopped? call gait_node/reset)'
-            _wait(executor, lambda: client.remaining != 0.0, timeout, what, interrupted)
-        _follow(executor, client, abs(deg), interrupted)
-        if interrupted.is_set():
-            client.send(0.0)
-            _wait(executor, lambda: client.remaining == 0.0, timeout, 'the turn to end')
-            print('turn ended on request', file=sys.stderr)
-            return 130
+        return _turn(_client(context, namespace), deg, timeout, _missing(domain_id), interrupted)
     finally:
         for number, handler in old.items():
             signal.signal(number, handler)
-        client.destroy_node()
         context.try_shutdown()
-    print(f'turned {deg:+.1f} deg')
+
+
+def _client(context: Context, namespace: str) -> TurnClient:
+    try:
+        return TurnClient(context, namespace=namespace)
+    except InvalidNamespaceException as error:
+        expected = 'letters, digits and _, parts divided by /'
+        raise BadInputError('namespace', namespace, expected) from error
+
+
+def _turn(
+    client: TurnClient, deg: float, timeout: float, missing: str, interrupted: threading.Event
+) -> int:
+    executor = SingleThreadedExecutor(context=client.context)
+    executor.add_node(client)
+    try:
+        _wait(executor, lambda: client.connected, timeout, missing, interrupted)
+        if interrupted.is_set():
+            raise KeyboardInterrupt
+        if deg == 0.0:
+            return _end(executor, client, timeout, 0)
+        client.send(math.radians(deg))
+        what = 'the gait node to accept the turn (stopped? call gait_node/reset)'
+        _wait(executor, lambda: client.accepted or client.gone, timeout, what, interrupted)
+        _follow(executor, client, abs(deg), interrupted)
+        if not client.over:
+            return _end(executor, client, timeout, 130)
+    finally:
+        client.destroy_node()
+    _check_end(client)
+    heading = client.heading_change
+    measured = '' if heading is None else f', odom measured {math.degrees(heading):+.1f} deg'
+    print(f'commanded {deg:+.1f} deg, ended{measured}')
     return 0
+
+
+def _end(executor: SingleThreadedExecutor, client: TurnClient, timeout: float, code: int) -> int:
+    """End the turn under way, of whomever it is, and return the exit code."""
+    client.send(0.0)
+    left = abs(math.degrees(client.left))
+    _wait(executor, lambda: client.remaining == 0.0, timeout, 'the turn to end')
+    text = f'turn ended on request, {left:.1f} deg left: the body straightens'
+    print(f'{text}, and an unfinished cycle mostly loses its angle', file=sys.stderr)
+    return code
+
+
+def _check_end(client: TurnClient) -> None:
+    """Raise NodeError where the turn did not end by itself."""
+    left = f'{abs(math.degrees(client.left)):.1f} deg left'
+    if client.gone:
+        raise NodeError(f'the gait node went away, {left}')
+    if client.other is not None:
+        other = math.degrees(client.other)
+        raise NodeError(f'another client commanded {other:+.1f} deg, {left}')
+    if abs(math.degrees(client.left)) > MEANT:
+        raise NodeError(f'stopped with {left} (gait_node/stop, or its corrections are used up)')
 
 
 def _missing(domain_id: int | None) -> str:
@@ -126,13 +142,11 @@ def _follow(
     size_deg: float,
     interrupted: threading.Event,
 ) -> None:
+    """Show progress until the turn is over, however it ends."""
     bar_format = '{desc} {percentage:3.0f}%|{bar}| {n:.1f}/{total:.1f} deg [{elapsed}]'
     with tqdm(total=size_deg, desc='turning', bar_format=bar_format, mininterval=0.2) as bar:
-        while client.remaining != 0.0 and not interrupted.is_set():
+        while not client.over and not interrupted.is_set():
             executor.spin_once(timeout_sec=0.1)
-            left = abs(math.degrees(client.remaining or 0.0))
-            bar.n = min(max(size_deg - left, 0.0), size_deg)
+            bar.n = min(max(size_deg - abs(math.degrees(client.left)), 0.0), size_deg)
             bar.update(0)
-        if client.remaining == 0.0:
-            bar.n = size_deg
         bar.refresh()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -38,14 +39,22 @@ def read_config(folder: str, name: str) -> dict[str, Any]:
         entry = Path(name).expanduser()
     else:
         entry = config_root() / folder / f'{name}.yaml'
+    field = folder.removesuffix('s')
     if not entry.is_file():
         raise BadInputError(
-            folder, name, f'a path to a .yaml file or one of {config_names(folder)}'
+            field, name, f'a path to a .yaml file or one of {config_names(folder)}'
         )
     try:
         data = yaml.safe_load(entry.read_text(encoding='utf-8'))
     except (yaml.YAMLError, UnicodeDecodeError) as error:
-        raise BadInputError(folder, name, f'valid YAML ({error})') from error
+        raise BadInputError(field, name, f'valid YAML ({error})') from error
     if not isinstance(data, dict):
-        raise BadInputError(folder, name, 'a YAML mapping at the top level')
+        raise BadInputError(field, name, 'a YAML mapping at the top level')
     return data
+
+
+def fields_apart(data: Iterable[object], expected: Iterable[str]) -> str:
+    """Return for people which fields should not be there and which are missing."""
+    unknown, missing = set(map(str, data)) - set(expected), set(expected) - set(map(str, data))
+    named = (('unknown', unknown), ('missing', missing))
+    return ', '.join(f'{what}: {" ".join(sorted(some))}' for what, some in named if some)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from omega_turn_ros.errors import BadInputError
-from omega_turn_ros.resources import read_config
+from omega_turn_ros.resources import fields_apart, read_config
 
 AXES = ('yaw', 'pitch')
 
@@ -137,12 +137,11 @@ def robot_from_mapping(data: dict[str, Any]) -> Robot:
         'velocity_limit',
         'effort_limit',
     )
-    known = {'name', 'joints', 'effort_sign', *numbers}
-    unknown = sorted(set(data) - known)
-    if unknown:
-        raise BadInputError(
-            f'robot field {unknown[0]}', data[unknown[0]], f'one of {sorted(known)}'
-        )
+    optional = {'name', 'effort_sign'}
+    known = {'joints', *numbers} | (optional & set(data))
+    if not set(data) <= known:
+        expected = f'the fields of a robot file ({fields_apart(data, known)})'
+        raise BadInputError('robot', data.get('name'), expected)
     names, axes = _check_joints(data.get('joints'))
     values = {key: _check_positive(key, data.get(key)) for key in numbers}
     if values['position_limit'] > math.pi:

@@ -19,7 +19,7 @@ from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.nodes.health import PUBLISH_EVERY, Freshness, Health, steady_clock
 from omega_turn_ros.nodes.inbox import Inbox
 from omega_turn_ros.nodes.joint_message import JointReader, JointWriter
-from omega_turn_ros.nodes.parameters import NodeParameters
+from omega_turn_ros.nodes.parameters import DECLARE_GIVEN, NodeParameters
 from omega_turn_ros.nodes.parameters import ParameterSpec as Spec
 from omega_turn_ros.nodes.qos import COMMAND, STATE
 from omega_turn_ros.nodes.runner import run_node
@@ -138,7 +138,7 @@ class PyBulletBridge(Node):
     """
 
     def __init__(self, context: Context | None = None, **options: Any) -> None:
-        super().__init__('pybullet_bridge', context=context, **options)
+        super().__init__('pybullet_bridge', context=context, **DECLARE_GIVEN, **options)
         self._settings = NodeParameters(self, BRIDGE_PARAMETERS, self._accept, self._apply)
         values = self._settings
         self._robot = load_robot(values['robot'])
@@ -160,6 +160,7 @@ class PyBulletBridge(Node):
         self._wall = self._steady.now().nanoseconds
         self._rate_from = (self._wall, self._simulation.time)
         self._publish()
+        self._health.ready(f'{self._robot.name}, terrain {values["terrain"]}')
 
     @property
     def simulation(self) -> Simulation:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import pybullet
 from numpy.typing import NDArray
 
 from omega_turn_ros.errors import BadInputError, SimulationError
+from omega_turn_sim_bridge.engine import pybullet
 from omega_turn_sim_bridge.simulation import Simulation
 
 DISTANCE = 40.0  # camera height in picture sizes: 5 cm of body shift by 0.1 % of a 1 m view

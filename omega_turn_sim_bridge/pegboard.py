@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-import pybullet
 from numpy.typing import NDArray
 
+from omega_turn_sim_bridge.engine import pybullet
 from omega_turn_sim_bridge.terrain_config import TerrainConfig
 
 Array = NDArray[np.float64]

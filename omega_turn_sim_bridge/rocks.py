@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-import pybullet
 from numpy.typing import NDArray
 
 from omega_turn_ros.robot import STANDARD_GRAVITY
+from omega_turn_sim_bridge.engine import pybullet
 from omega_turn_sim_bridge.terrain_config import TerrainConfig
 
 Array = NDArray[np.float64]

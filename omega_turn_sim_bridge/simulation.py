@@ -9,11 +9,11 @@ from pathlib import Path
 from types import TracebackType
 
 import numpy as np
-import pybullet
 from numpy.typing import ArrayLike, NDArray
 
 from omega_turn_ros.errors import BadInputError, SimulationError
 from omega_turn_ros.robot import STANDARD_GRAVITY, Robot
+from omega_turn_sim_bridge.engine import pybullet
 from omega_turn_sim_bridge.robot import ride_height, urdf_from_robot
 from omega_turn_sim_bridge.terrain import build_ground
 from omega_turn_sim_bridge.terrain_config import TerrainConfig

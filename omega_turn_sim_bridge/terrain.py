@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import pybullet
-
 from omega_turn_ros.robot import Robot
+from omega_turn_sim_bridge.engine import pybullet
 from omega_turn_sim_bridge.terrain_config import TerrainConfig
 
 

@@ -28,7 +28,15 @@ ROS_ROOMS = (f'{CONTROL}.nodes', f'{BRIDGE}.bridge_node', 'launch')
 # Of the lab: what talks to the nodes. The door (cli) may, but only once a command asks for it.
 ROS_LAB = tuple(
     f'{LAB}.{name}'
-    for name in ('demo', 'turn', 'recording', 'live', 'reference', 'ros_environment')
+    for name in (
+        'demo',
+        'turn',
+        'turn_client',
+        'recording',
+        'live',
+        'reference',
+        'ros_environment',
+    )
 )
 ROS_LATE = (f'{LAB}.cli',)
 

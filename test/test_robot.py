@@ -113,8 +113,14 @@ def test_missing_field_is_refused_by_name(data: dict[str, Any], field: str) -> N
 
 def test_misspelt_field_is_refused_by_name(data: dict[str, Any]) -> None:
     data['velocity_limt'] = 2.0
-    with pytest.raises(BadInputError, match=r'^robot field velocity_limt: '):
+    with pytest.raises(BadInputError, match=r'^robot: .*\(unknown: velocity_limt\)$'):
         robot_from_mapping(data)
+
+
+def test_a_gait_file_is_no_robot_file() -> None:
+    expected = r"^robot: got 'omega', .*unknown: calibration .*, missing: effort_limit .*_limit\)$"
+    with pytest.raises(BadInputError, match=expected):
+        robot_from_mapping(read_config('gaits', 'omega'))
 
 
 @pytest.mark.parametrize(
@@ -158,7 +164,7 @@ def test_effort_sign_is_plus_or_minus_one_and_plus_when_left_out(data: dict[str,
 
 
 def test_unknown_robot_is_refused_with_the_names_there_are() -> None:
-    with pytest.raises(BadInputError, match=r"^robots: got 'snake', expected .*'limbless16'"):
+    with pytest.raises(BadInputError, match=r"^robot: got 'snake', expected .*'limbless16'"):
         load_robot('snake')
 
 

@@ -76,12 +76,14 @@ def _draw_angles(
         )
         axes.vlines(x, [s.low for s in spreads], [s.high for s in spreads], colour, linewidth=2.4)
     axes.set_xticks(list(spacings))
-    axes.set_xlabel('spacing of the pegs [BL]; thin: std, thick: 95 % interval of the mean')
+    axes.set_xlabel('spacing of the pegs [BL]')
+    axes.set_title('thin: ± std, thick: 95 % interval of the mean', loc='left', fontsize=7.0)
     axes.set_ylabel('angle per cycle [deg]')
 
 
 def _draw_motion(axes: Axes, trial: ObstacleTrial, result: Result) -> None:
     """Body over time between the pegs: pale at first, dark at the end, head marked."""
+    from matplotlib.colors import to_rgb
     from matplotlib.patches import Circle, Polygon
 
     chain = PlanarChain.of_robot(trial.robot)
@@ -90,12 +92,16 @@ def _draw_motion(axes: Axes, trial: ObstacleTrial, result: Result) -> None:
     outlines = chain.outline(angles[chosen], poses[chosen])
     for i, outline in enumerate(outlines):
         depth = 0.15 + 0.85 * i / (SHAPES - 1)
+        # Mixed with white by hand: a body of see-through strips would show its overlaps.
+        body, head = ((1.0 - depth) + depth * np.array(to_rgb(c)) for c in COLOURS[:2])
         for polygon in body_polygons(outline, trial.robot.module_width):
-            axes.add_patch(Polygon(polygon, facecolor=COLOURS[0], alpha=0.35 * depth, lw=0))
-        axes.plot(*outline[0], 'o', color=COLOURS[1], ms=2.2, alpha=depth)
+            axes.add_patch(Polygon(polygon, facecolor=body, lw=0, zorder=1 + i))
+        axes.plot(*outline[0], 'o', color=head, ms=2.2, zorder=1 + i)
     low, high = (f(outlines.reshape(-1, 2), axis=0) for f in (np.min, np.max))
     for peg in peg_positions(trial.terrain, trial.robot, trial.seed):
-        axes.add_patch(Circle(tuple(peg), trial.terrain.peg_radius, facecolor='0.25', lw=0))
+        axes.add_patch(
+            Circle(tuple(peg), trial.terrain.peg_radius, facecolor='0.25', lw=0, zorder=SHAPES + 1)
+        )
     axes.set_xlim(low[0] - MARGIN, high[0] + MARGIN)
     axes.set_ylim(low[1] - MARGIN, high[1] + MARGIN)
     axes.set_aspect('equal')

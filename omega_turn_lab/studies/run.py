@@ -9,6 +9,7 @@ from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 
+from omega_turn_lab.folder import make_folder
 from omega_turn_lab.studies import NAMES
 from omega_turn_lab.studies.executor import DaskExecutor, Executor, LocalExecutor, compute
 from omega_turn_lab.studies.rows import print_table, write_json
@@ -116,8 +117,5 @@ def _checked(options: ReproduceOptions) -> Executor:
         raise BadInputError('seed', options.seed, 'an integer >= 0')
     if options.pybullet and find_spec('pybullet') is None:
         raise MissingPackageError('pybullet', 'sim', 'go without: --no-pybullet')
-    try:
-        options.out.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise BadInputError('out', str(options.out), f'a folder to write to ({error})') from error
+    make_folder(options.out)
     return DaskExecutor(options.dask) if options.dask else LocalExecutor(options.jobs)

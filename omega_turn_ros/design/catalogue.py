@@ -64,7 +64,10 @@ CATALOGUE = (
 def within_limits(recipe: Recipe, robot: Robot) -> Recipe:
     """Return the recipe with its joint limit lowered to the robot's own where that is tighter."""
     own = math.degrees(robot.position_limit)
-    return recipe if recipe.theta_max_deg <= own else replace(recipe, theta_max_deg=own)
+    if recipe.theta_max_deg <= own:
+        return recipe
+    text = f'{recipe.description}, here {own:.1f} deg, the limit of {robot.name}'
+    return replace(recipe, theta_max_deg=own, description=text)
 
 
 def design_recipe(recipe: Recipe, robot: Robot, seed: int = 0) -> tuple[Design, LibraryGait]:

@@ -1,4 +1,4 @@
-"""Direct search over all parameters of eq:prescribe_amp at once, by CMA-ES.
+"""Direct search over all parameters of eq:prescribe_amp at once.
 
 Every candidate is scaled to the joint limit first, and further down where the body would meet
 itself, so the search runs on feasible gaits only and needs no penalty (own derivation).
@@ -29,7 +29,7 @@ FINE_STRIDE = 5  # the last search keeps limits on the fine grid, and integrates
 def design_direct(
     problem: DesignProblem,
     seed: int = 0,
-    starts: int = 12,
+    starts: int = 20,
     area_weight: float = 0.0,
     per_second: bool = False,
 ) -> Design:
@@ -54,7 +54,7 @@ def design_direct(
         raise BadInputError('area_weight', area_weight, '0 where turning speed is maximised')
     value = partial(_value, area_weight=area_weight, per_second=per_second)
     rng = np.random.default_rng(seed)
-    candidates = rng.normal(size=(SCREENED * starts, 6))
+    candidates = rng.uniform(-1.0, 1.0, size=(SCREENED * starts, 6))
     candidates[:, 3:] = rng.uniform(-np.pi, np.pi, (SCREENED * starts, 3))
     coarse = cost_of(problem, coefficients_of, value)
     fine = cost_of(replace(problem, samples=FINE), coefficients_of, value, FINE_STRIDE)

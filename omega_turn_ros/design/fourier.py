@@ -26,7 +26,7 @@ FINE_STRIDE = 5
 
 
 def design_fourier(
-    problem: DesignProblem, seed: int = 0, starts: int = 12, harmonics: int = 2
+    problem: DesignProblem, seed: int = 0, starts: int = 20, harmonics: int = 2
 ) -> Design:
     """Find the Fourier gait that turns most per second at equal peak joint speed.
 

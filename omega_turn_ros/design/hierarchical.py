@@ -24,7 +24,7 @@ ROUNDS = 30  # at most, each through all three planes
 FAR, FAR_GAIN = 1.0, 0.005
 NEAR, NEAR_GAIN = 0.3, 0.0005  # for the best start, once more
 CLOSER, LAST_SPREAD = 0.5, 0.01
-SAME = 0.01  # relative difference of two angles that count as one
+SAME = 0.05  # relative difference of two angles that count as one
 
 
 def design_hierarchical(problem: DesignProblem, seed: int = 0, starts: int = 8) -> Design:

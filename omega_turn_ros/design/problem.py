@@ -144,7 +144,7 @@ class Design:
         method: 'direct', 'fourier' or 'hierarchical'.
         evaluations: cycles integrated on the way, all starts.
         starts: how many starting points.
-        agreeing: how many of them ended within 1 % of the best.
+        agreeing: how many of them came within 5 % of the best by themselves.
         reason: why the best start stopped.
     """
 

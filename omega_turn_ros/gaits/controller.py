@@ -68,7 +68,9 @@ class GaitController:
         unbend_heading: Callable[[Array], float],
     ) -> None:
         if gait.calibration.n_joints != robot.n_yaw:
-            raise BadInputError('gait', gait.name, f'a gait calibrated for N = {robot.n_yaw}')
+            count = f'{robot.n_yaw} yaw joints of {robot.name}, not {gait.calibration.n_joints}'
+            own = 'omega_turn design --all --robot ... makes its own'
+            raise BadInputError('gait', gait.name, f'one for the {count}: {own}')
         if gait.theta_max > limits.position + 1e-9:
             raise BadInputError('gait', gait.name, f'joint angles within {limits.position} rad')
         self.robot, self.gait, self.config, self.limits = robot, gait, config, limits

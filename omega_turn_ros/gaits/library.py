@@ -11,7 +11,7 @@ from omega_turn_ros.gaits.calibration import Calibration, calibration_from_mappi
 from omega_turn_ros.gaits.fourier_gait import FourierGait
 from omega_turn_ros.gaits.two_wave_gait import TwoWaveGait
 from omega_turn_ros.gaits.wave_gait import WaveGait
-from omega_turn_ros.resources import config_names, read_config
+from omega_turn_ros.resources import config_names, fields_apart, read_config
 
 KINDS: dict[str, type[TwoWaveGait] | type[FourierGait]] = {
     'two_wave': TwoWaveGait,
@@ -54,8 +54,7 @@ def load_gait(name: str) -> LibraryGait:
     data = read_config('gaits', name)
     expected = {'name', 'description', 'kind', 'robot', 'theta_max', 'parameters', 'calibration'}
     if set(data) != expected:
-        odd = sorted(set(data) ^ expected)
-        raise BadInputError(f'gait {name}', odd, f'exactly the fields {sorted(expected)}')
+        raise BadInputError('gait', name, f'a gait file ({fields_apart(data, expected)})')
     if data['kind'] not in KINDS:
         raise BadInputError('gait kind', data['kind'], f'one of {sorted(KINDS)}')
     theta_max = data['theta_max']

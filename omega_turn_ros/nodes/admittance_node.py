@@ -21,7 +21,7 @@ from omega_turn_ros.mechanics.chain import PlanarChain
 from omega_turn_ros.nodes.health import PUBLISH_EVERY, Freshness, Health, steady_clock
 from omega_turn_ros.nodes.inbox import Inbox
 from omega_turn_ros.nodes.joint_message import JointReader, JointWriter
-from omega_turn_ros.nodes.parameters import NodeParameters
+from omega_turn_ros.nodes.parameters import DECLARE_GIVEN, NodeParameters
 from omega_turn_ros.nodes.parameters import ParameterSpec as Spec
 from omega_turn_ros.nodes.qos import STATE, STATE_INPUT
 from omega_turn_ros.nodes.runner import run_node
@@ -108,7 +108,7 @@ class AdmittanceNode(Node):
     """
 
     def __init__(self, context: Context | None = None, **options: Any) -> None:
-        super().__init__('admittance_node', context=context, **options)
+        super().__init__('admittance_node', context=context, **DECLARE_GIVEN, **options)
         self._settings = NodeParameters(self, ADMITTANCE_PARAMETERS, self._accept, self._apply)
         self._robot = load_robot(self._settings['robot'])
         self._yaw = self._robot.yaw_indices
@@ -121,6 +121,7 @@ class AdmittanceNode(Node):
         self._phases: tuple[float, float] | None = None
         self._phases_stamp, self._playing = -1, False
         self._answered = -1
+        self._relaxing = False
         self._stamp = Time()
         lock_step = self._settings['lock_step']
         qos = STATE if lock_step else STATE_INPUT
@@ -134,6 +135,7 @@ class AdmittanceNode(Node):
         steady = steady_clock()
         self.create_timer(WATCHDOG_PERIOD, self._on_watchdog, clock=steady)
         self.create_timer(PUBLISH_EVERY, self._publish_health, clock=steady)
+        self._health.ready(f'{self._robot.name}, gait {self._settings["gait"]}')
 
     def _accept(self, values: Mapping[str, Any]) -> None:
         make_compliance(values, load_robot(values['robot']))
@@ -188,6 +190,9 @@ class AdmittanceNode(Node):
             return
         self._answered = stamp
         self._efforts_seen.mark()
+        if self._relaxing:
+            self._relaxing = False
+            self.get_logger().info('efforts are back')
         dt = self._time.step(stamp)
         phases = self._phases if self._playing and self._phases_seen.fresh else None
         if phases is not None:
@@ -206,7 +211,9 @@ class AdmittanceNode(Node):
         """While efforts are missing, bring the offsets home on the steady clock."""
         dt = self._relax_time.step(steady_clock().now().nanoseconds)
         if not self._efforts_seen.fresh and any(self._state.admittance.offset):
-            self._health.warn('stale', 'no efforts: amplitude offsets relax to 0')
+            self._relaxing = True
+            age = self._efforts_seen.age
+            self._health.warn('stale', f'no efforts for {age:.1f} s: amplitude offsets relax to 0')
             self._state = self._controller.relax(self._state, dt)
             self._publish(self.get_clock().now().to_msg())
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -22,9 +21,9 @@ from omega_turn_ros.nodes.gait_parameters import GAIT_PARAMETERS, make_controlle
 from omega_turn_ros.nodes.health import PUBLISH_EVERY, Freshness, Health, steady_clock
 from omega_turn_ros.nodes.inbox import Inbox
 from omega_turn_ros.nodes.joint_message import JointReader, JointWriter
-from omega_turn_ros.nodes.messages import heading_of, read_offsets
-from omega_turn_ros.nodes.parameters import NodeParameters
-from omega_turn_ros.nodes.qos import COMMAND, LATCHED, REQUEST, STATE, STATE_INPUT
+from omega_turn_ros.nodes.messages import heading_of, read_offsets, text_of_end, text_of_request
+from omega_turn_ros.nodes.parameters import DECLARE_GIVEN, NodeParameters
+from omega_turn_ros.nodes.qos import COMMAND, REMAINING, REQUEST, STATE, STATE_INPUT
 from omega_turn_ros.nodes.raw_joint_states import RawStateReader
 from omega_turn_ros.nodes.runner import run_node
 from omega_turn_ros.nodes.seldom import SeldomGroup
@@ -48,7 +47,7 @@ class GaitNode(Node):
     """
 
     def __init__(self, context: Context | None = None, **options: Any) -> None:
-        super().__init__('gait_node', context=context, **options)
+        super().__init__('gait_node', context=context, **DECLARE_GIVEN, **options)
         self._state = ControllerState()
         self._settings = NodeParameters(self, GAIT_PARAMETERS, self._accept, self._apply)
         self._robot = load_robot(self._settings['robot'])
@@ -70,6 +69,8 @@ class GaitNode(Node):
         if not self._lock_step:
             self.create_timer(self._period, self._on_timer)
         self._report_remaining()
+        gait, feedback = self._controller.gait.name, self._settings['heading_feedback']
+        self._health.ready(f'{self._robot.name}, gait {gait}, heading feedback {feedback}')
 
     @property
     def cycles_done(self) -> int:
@@ -94,7 +95,7 @@ class GaitNode(Node):
         )
         self._phases = self.create_publisher(JointState, 'wave_phases', COMMAND)
         self._phase_writer = JointWriter(WAVES)
-        self._remaining = self.create_publisher(Float64, 'turn_remaining', LATCHED)
+        self._remaining = self.create_publisher(Float64, 'turn_remaining', REMAINING)
         stop = self.create_service(Trigger, '~/stop', self._on_stop)
         self.create_service(Trigger, '~/reset', self._on_reset)
         self._seldom = SeldomGroup(self, (stop,), round(SELDOM * self._settings['rate']))
@@ -166,7 +167,7 @@ class GaitNode(Node):
             except BadInputError as error:
                 self._health.refuse('turn_angle', str(error))
             else:
-                self._health.note('turn', f'turn by {math.degrees(message.data):.6g} deg')
+                self._health.note(f'turn {message.data == 0.0}', text_of_request(message.data))
                 self._report_remaining()
 
     def _read_inputs(self) -> None:
@@ -213,12 +214,14 @@ class GaitNode(Node):
         )
 
     def _advance(self, dt: float, stamp: Time) -> None:
-        was_turning = self._state.goal is not None
+        goal = self._state.goal
         self._state, self._output = self._controller.step(self._state, self._inputs, dt)
         self._heading = None  # a measurement counts once; until the next one the model predicts
         self._publish_output(stamp)
         self._ticks += 1
-        if self._ticks % REMAINING_EVERY == 0 or was_turning != (self._state.goal is not None):
+        if goal is not None and self._state.goal is None:
+            self._say_ended(goal, self._state.shortfall)
+        elif self._ticks % REMAINING_EVERY == 0:
             self._report_remaining()
 
     def _publish_output(self, stamp: Time) -> None:
@@ -232,6 +235,11 @@ class GaitNode(Node):
             self._phases.publish(self._phase_writer.fill(stamp, phases, rates))
         self._commands.publish(stamp, output.positions, output.velocities)
 
+    def _say_ended(self, goal: float, shortfall: float) -> None:
+        self._remaining.publish(Float64(data=shortfall))  # a client judges the turn by it
+        self._report_remaining()
+        self.get_logger().info(text_of_end(goal, shortfall))
+
     def _report_remaining(self) -> None:
         remaining = self._state.remaining
         if remaining != self._reported:
@@ -239,6 +247,7 @@ class GaitNode(Node):
             self._remaining.publish(Float64(data=remaining))
 
     def _on_stop(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        self._report_remaining()  # what the stop leaves
         self._state = self._controller.stop(self._state)
         self._report_remaining()
         self.get_logger().warning('stopped; commands are refused until reset')

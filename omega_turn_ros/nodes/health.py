@@ -35,9 +35,12 @@ class Freshness:
     @property
     def fresh(self) -> bool:
         """Whether the last arrival is within the timeout."""
-        if self._last is None:
-            return False
-        return self.timeout == 0.0 or time.monotonic() - self._last <= self.timeout
+        return self._last is not None and (self.timeout == 0.0 or self.age <= self.timeout)
+
+    @property
+    def age(self) -> float:
+        """Time since the last arrival [s], infinite before the first."""
+        return math.inf if self._last is None else time.monotonic() - self._last
 
 
 class Health:
@@ -52,6 +55,10 @@ class Health:
         self._refused: Counter[str] = Counter()
         self._spoke: dict[str, float] = {}
         self._publisher = node.create_publisher(DiagnosticArray, 'diagnostics', 10)
+
+    def ready(self, what: str) -> None:
+        """Say once, at the end of the start, what the node works with."""
+        self._node.get_logger().info(f'{self._node.get_name()} ready: {what}')
 
     def refuse(self, topic: str, reason: str) -> None:
         """Count a message that was dropped whole and warn, throttled per topic."""

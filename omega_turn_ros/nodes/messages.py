@@ -35,3 +35,14 @@ def read_offsets(message: JointState, reader: JointReader, limit: float) -> tupl
         if abs(value) > limit * (1.0 + 1e-9):
             raise BadInputError(f'offset of {name}', value, f'within +-{limit} rad')
     return forward, turning
+
+
+def text_of_end(goal: float, shortfall: float) -> str:
+    """Say how a turn by `goal` [rad] ended that lacks `shortfall` [rad]."""
+    side = 'short' if shortfall * goal >= 0.0 else 'too far'
+    return f'turn ended, {abs(math.degrees(shortfall)):.1f} deg {side}'
+
+
+def text_of_request(angle: float) -> str:
+    """Say what a `turn_angle` [rad] asks for."""
+    return f'turn by {math.degrees(angle):.6g} deg' if angle else 'turn ended on request'

@@ -15,6 +15,10 @@ from omega_turn_ros.errors import BadInputError
 
 Value = bool | int | float | str | list[float]
 
+# For the constructor of a node with NodeParameters: the way to learn what the user gave.
+DECLARE_GIVEN = {'automatically_declare_parameters_from_overrides': True}
+OF_EVERY_NODE = ('use_sim_time', 'start_type_description_service')
+
 
 @dataclass(frozen=True, slots=True)
 class ParameterSpec:
@@ -112,6 +116,7 @@ class NodeParameters:
         self._specs = {spec.name: spec for spec in specs}
         self._accept, self._apply = accept, apply
         self.values: dict[str, Any] = {}
+        _take_back_given(node, self._specs)
         for spec in self._specs.values():
             # Dynamic typing lets `-p period:=8` pass for 8.0; `check` keeps the type.
             descriptor = ParameterDescriptor(
@@ -147,3 +152,14 @@ class NodeParameters:
     def _post_set(self, parameters: list[Parameter]) -> None:
         self.values = self._merged(parameters)
         self._apply(self.values)
+
+
+def _take_back_given(node: Node, known: Iterable[str]) -> None:
+    """Undeclare what the user gave: known names are declared anew, others were a mistake."""
+    given = set(node.list_parameters([], 0).names) - set(OF_EVERY_NODE)
+    for name in given:
+        node.undeclare_parameter(name)
+    unknown = sorted(name for name in given - set(known) if not name.startswith('qos_overrides.'))
+    if unknown:
+        text = f'parameters that {node.get_name()} does not have are ignored'
+        node.get_logger().warning(f'{text}: {", ".join(unknown)}')

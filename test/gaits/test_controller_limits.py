@@ -214,5 +214,7 @@ def test_gait_calibrated_for_another_number_of_joints_is_refused_naming_it(
     make_controller: Callable[..., GaitController], omega: LibraryGait
 ) -> None:
     other = replace(omega, calibration=replace(omega.calibration, n_joints=7))
-    with pytest.raises(BadInputError, match=r"^gait: got 'omega', expected .*N = 8"):
+    with pytest.raises(
+        BadInputError, match=r"^gait: got 'omega', expected .* 8 yaw joints of limbless16, not 7"
+    ):
         make_controller(gait=other)

@@ -47,7 +47,7 @@ def test_design_prints_and_stores_a_gait_the_library_loads(
     [
         ({'module_length': 0.0}, [], 'module_length'),
         ({'joints': SMALL['joints'][:1]}, [], 'joints'),
-        ({'position_limit': 0.001}, ['--theta-max-deg', '0.05'], 'theta_max'),
+        ({'position_limit': 0.001}, [], 'theta_max'),
         ({}, ['--theta-max-deg', '90'], 'theta_max'),
         ({}, ['--theta-max-deg', '60', '--k-t', '7'], 'k_t'),
         ({}, ['--theta-max-deg', '60', '--method', 'magic'], 'method'),

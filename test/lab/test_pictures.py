@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from PIL.GifImagePlugin import GifImageFile
 from PIL.PngImagePlugin import PngImageFile
 
@@ -59,6 +60,15 @@ def test_the_figure_is_a_wide_picture_with_start_and_end_in_their_colours(
         pixels = np.asarray(picture.convert('RGB')).reshape(-1, 3).astype(int)
     for colour in ((0x1F, 0x62, 0xB0), (0xC4, 0x1A, 0x1A)):
         assert np.count_nonzero(np.abs(pixels - colour).max(axis=1) < 8) > 2000
+
+
+def test_the_title_keeps_one_decimal(
+    record: RunRecord, robot: Robot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    titles: list[str] = []
+    monkeypatch.setattr(Figure, 'suptitle', lambda self, text, **_: titles.append(text))
+    draw_turn(record, robot, -135.0, tmp_path / 'turn.png')
+    assert 'commanded \N{MINUS SIGN}135.0°, achieved ' in titles[0]
 
 
 def test_a_turn_the_other_way_and_one_that_never_moves_are_drawn_too(

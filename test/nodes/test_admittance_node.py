@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
+from rcl_interfaces.msg import Log
 from ros_graph import Graph, User
 from sensor_msgs.msg import JointState
 from turner import ROBOT, STEP, Turner
@@ -223,6 +225,20 @@ def test_lost_efforts_let_the_offsets_fade_at_a_bounded_rate(graph: Graph) -> No
     assert len(fading) >= 4
     assert np.abs(np.diff(fading, axis=0)).max() <= 0.5 * 0.1 + 1e-9
     compliant.user.wait_for_problem('admittance_node', 'efforts stale')
+
+
+def test_the_log_tells_how_long_efforts_were_lost_and_once_that_they_are_back(
+    graph: Graph,
+) -> None:
+    compliant = Compliant(graph, effort_timeout=0.5)
+    log = compliant.user.hear(Log, '/rosout')
+    lost = r'no efforts for 0\.[5-9] s: amplitude offsets relax to 0'
+    pushed(compliant)
+    compliant.run(1.0)
+    compliant.graph.spin_until(lambda: any(re.fullmatch(lost, m.msg) for m in log), lost)
+    compliant.run(0.5)
+    graph.spin_until(lambda: any(m.msg == 'efforts are back' for m in log), 'efforts are back')
+    assert sum(m.msg == 'efforts are back' for m in log) == 1
 
 
 @pytest.mark.parametrize('jump', [100.0, -0.5], ids=['forward', 'backward'])

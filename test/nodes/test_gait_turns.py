@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+import re
 import threading
 import time
 from collections.abc import Callable
 
 import numpy as np
 import pytest
+from rcl_interfaces.msg import Log
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from ros_graph import Graph, User
 from sensor_msgs.msg import JointState
@@ -18,6 +20,7 @@ from turner import BRISK, ROBOT, STEP, CommandWatch, FakeRobot, Turner
 from omega_turn_ros.gaits.limits import JointLimits
 
 MakeTurner = Callable[..., Turner]
+ROSOUT = QoSProfile(depth=1000)
 ODOM = {'turns': True, 'heading_feedback': 'odom'}
 
 
@@ -78,6 +81,21 @@ def test_zero_ends_the_turn_and_straightens_the_body(make_turner: MakeTurner) ->
     turner.graph.spin_until(lambda: len(turner.user.remaining) > before, 'turn_remaining')
     turner.wait_for_end()
     assert not turner.wait_for_commands(20).any()
+
+
+def test_the_log_tells_how_a_turn_ended(make_turner: MakeTurner) -> None:
+    turner = make_turner(**ODOM)
+    log = turner.user.hear(Log, '/rosout', ROSOUT)
+
+    def wait_for_line(pattern: str) -> None:
+        turner.graph.spin_until(lambda: any(re.fullmatch(pattern, m.msg) for m in log), pattern)
+
+    turner.start_turn(0.5)
+    turner.wait_for_end()
+    wait_for_line(r'turn ended, [01]\.\d deg (short|too far)')
+    turner.start_turn(1.2)
+    turner.user.turn(0.0)
+    wait_for_line('turn ended on request')
 
 
 def test_an_angle_sent_before_the_robot_is_there_waits_for_it(graph: Graph) -> None:

@@ -51,6 +51,27 @@ def test_a_signal_ends_a_node_cleanly(
 
 
 @pytest.mark.parametrize(
+    ('name', 'ready'),
+    [
+        ('gait_node', 'limbless16, gait omega, heading feedback odom'),
+        ('admittance_node', 'limbless16, gait omega'),
+        ('pybullet_bridge', 'limbless16, terrain flat'),
+    ],
+)
+def test_a_node_says_what_it_works_with_and_which_parameters_it_does_not_know(
+    graph: Graph, start_process: StartProcess, name: str, ready: str
+) -> None:
+    user = User(graph)
+    parameters = {'heading_feedback': 'odom'} if name == 'gait_node' else {}
+    process = start_process(name, heading_feedbak='odom', use_sim_time=False, **parameters)
+    graph.spin_until(lambda: name in user.health, 'diagnostics')
+    lines = process.stderr.splitlines()
+    assert sum(line.endswith(f'{name} ready: {ready}') for line in lines) == 1
+    (warning,) = (line for line in lines if '[WARN]' in line)
+    assert warning.endswith(f'{name} does not have are ignored: heading_feedbak')
+
+
+@pytest.mark.parametrize(
     ('name', 'parameters', 'expected'),
     [
         ('gait_node', {'period': 0.1}, 'error: parameter period: got 0.1, expected a number in'),

@@ -122,6 +122,29 @@ def test_the_command_line_loads_nothing_heavy_until_asked() -> None:
     assert done.stdout.strip() == '[]'
 
 
+def test_sigterm_ends_it_quietly_like_ctrl_c(tmp_path: Path) -> None:
+    command = [sys.executable, '-m', 'omega_turn_lab.cli', 'reproduce', 'joints', '--jobs', '2']
+    process = subprocess.Popen(
+        [*command, '--no-pybullet', '--out', str(tmp_path)],
+        cwd=ROOT,
+        env={**os.environ, 'PYTHONPATH': str(ROOT)},
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    try:
+        assert process.stderr is not None
+        while 'designing' not in process.stderr.read(9):
+            assert process.poll() is None
+        time.sleep(3.0)  # for the workers to be under way
+        process.terminate()
+        _, errors = process.communicate(timeout=30)
+    finally:
+        process.kill()
+    assert process.returncode == 130
+    assert errors.splitlines()[-1] == 'interrupted'
+    assert not any(word in errors for word in ('Traceback', 'Warning', 'leaked'))
+
+
 @pytest.mark.slow
 def test_an_interrupt_keeps_what_is_finished_and_exits_130(tmp_path: Path) -> None:
     cache = tmp_path / '.cache'

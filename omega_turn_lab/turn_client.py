@@ -1,0 +1,105 @@
+"""The node behind `omega_turn turn`: sends one turn, hears what becomes of it."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from nav_msgs.msg import Odometry
+from rclpy.context import Context
+from rclpy.event_handler import QoSLivelinessChangedInfo, SubscriptionEventCallbacks
+from rclpy.node import Node
+from std_msgs.msg import Float64
+
+from omega_turn_ros.errors import BadInputError
+from omega_turn_ros.nodes.messages import heading_of
+from omega_turn_ros.nodes.qos import REMAINING_INPUT, REQUEST, STATE_INPUT
+
+
+class TurnClient(Node):
+    """Publishes one turn and follows `turn_remaining`, `odom` and what others command.
+
+    Args:
+        context: rclpy context.
+        options: passed on to `rclpy.node.Node`.
+
+    Attributes:
+        remaining: what the gait node said last [rad]; None before its first word.
+        left: the last of it that was not 0.0, or the angle sent [rad].
+        accepted: the gait node has taken up the turn.
+        gone: the gait node lived, and lives no more.
+        other: what another client commanded after us [rad]; None for nothing.
+    """
+
+    def __init__(self, context: Context, **options: Any) -> None:
+        super().__init__('omega_turn_client', context=context, **options)
+        self.remaining: float | None = None
+        self.left = 0.0
+        self.accepted = self.gone = False
+        self.other: float | None = None
+        self._sent: list[float] = []
+        self._own_heard = False
+        self._heading: float | None = None
+        self._heading_change = 0.0
+        self._publisher = self.create_publisher(Float64, 'turn_angle', REQUEST)
+        # Before turn_remaining: who took over is known before the angle is that of another turn.
+        self.create_subscription(Float64, 'turn_angle', self._on_angle, REQUEST)
+        alive = SubscriptionEventCallbacks(liveliness=self._on_liveliness)
+        self.create_subscription(
+            Float64, 'turn_remaining', self._on_remaining, REMAINING_INPUT, event_callbacks=alive
+        )
+        self.create_subscription(Odometry, 'odom', self._on_odom, STATE_INPUT)
+
+    @property
+    def connected(self) -> bool:
+        """Whether a gait node has spoken and all who listen, it among them, will hear us."""
+        speakers, listeners = (
+            [(info.node_namespace, info.node_name) for info in infos]
+            for infos in (
+                self.get_publishers_info_by_topic('turn_remaining'),
+                self.get_subscriptions_info_by_topic('turn_angle'),
+            )
+        )
+        heard = self._publisher.get_subscription_count() >= len(listeners)
+        return self.remaining is not None and heard and not set(speakers).isdisjoint(listeners)
+
+    @property
+    def over(self) -> bool:
+        """Whether our turn has ended in some way."""
+        return self.gone or self.other is not None or (self.accepted and self.remaining == 0.0)
+
+    @property
+    def heading_change(self) -> float | None:
+        """Measured since the turn was sent [rad]; None without odom."""
+        return None if self._heading is None else self._heading_change
+
+    def send(self, angle: float) -> None:
+        """Publish a turn [rad]."""
+        if angle != 0.0:
+            self.left, self.accepted, self._heading_change = angle, False, 0.0
+        self._sent.append(angle)
+        self._publisher.publish(Float64(data=angle))
+
+    def _on_angle(self, message: Float64) -> None:
+        if message.data in self._sent:
+            self._sent.remove(message.data)
+            self._own_heard = True
+        elif self._own_heard and self.other is None:
+            self.other = message.data
+
+    def _on_remaining(self, message: Float64) -> None:
+        self.remaining = message.data
+        if self.other is None and message.data != 0.0:
+            self.left, self.accepted = message.data, True
+
+    def _on_liveliness(self, event: QoSLivelinessChangedInfo) -> None:
+        self.gone = event.alive_count == 0 and event.alive_count_change < 0
+
+    def _on_odom(self, message: Odometry) -> None:
+        try:
+            heading = heading_of(message)
+        except BadInputError:
+            return
+        if self._heading is not None:
+            self._heading_change += math.remainder(heading - self._heading, math.tau)
+        self._heading = heading

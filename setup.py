@@ -13,6 +13,7 @@ setup(
         'omega_turn_ros.config',
         'omega_turn_ros.config.gaits',
         'omega_turn_ros.config.robots',
+        'omega_turn_ros.config.terrains',
         'omega_turn_ros.design',
         'omega_turn_ros.gaits',
         'omega_turn_ros.mechanics',
@@ -25,6 +26,7 @@ setup(
         'omega_turn_ros.config': 'config',
         'omega_turn_ros.config.gaits': 'config/gaits',
         'omega_turn_ros.config.robots': 'config/robots',
+        'omega_turn_ros.config.terrains': 'config/terrains',
     },
     package_data={
         'omega_turn_ros': ['py.typed'],
@@ -34,6 +36,7 @@ setup(
         'omega_turn_ros.config': ['*.yaml'],
         'omega_turn_ros.config.gaits': ['*.yaml'],
         'omega_turn_ros.config.robots': ['*.yaml'],
+        'omega_turn_ros.config.terrains': ['*.yaml'],
     },
     data_files=[
         ('share/ament_index/resource_index/packages', ['resource/' + PACKAGE]),
@@ -42,6 +45,7 @@ setup(
         ('share/' + PACKAGE + '/config', glob('config/*.yaml')),
         ('share/' + PACKAGE + '/config/gaits', glob('config/gaits/*.yaml')),
         ('share/' + PACKAGE + '/config/robots', glob('config/robots/*.yaml')),
+        ('share/' + PACKAGE + '/config/terrains', glob('config/terrains/*.yaml')),
     ],
     python_requires='>=3.10',
     install_requires=[

@@ -29,7 +29,7 @@ def read_config(folder: str, name: str) -> dict[str, Any]:
     """Read one mapping from a file path or from the shipped `config/<folder>/<name>.yaml`.
 
     Args:
-        folder: `'robots'` or `'gaits'`.
+        folder: `'robots'`, `'gaits'` or `'terrains'`.
         name: a shipped name such as `'limbless16'`, or a path ending in `.yaml`.
 
     Raises:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -25,7 +26,7 @@ from omega_turn_ros.nodes.runner import run_node
 from omega_turn_ros.nodes.time import nanoseconds_of, stamp_of
 from omega_turn_ros.robot import load_robot
 from omega_turn_sim_bridge.simulation import Observation, Simulation, SimulationConfig
-from omega_turn_sim_bridge.terrain import TERRAINS
+from omega_turn_sim_bridge.terrain_config import TerrainConfig, load_terrain
 
 IDLE_PERIOD = 0.0005  # [s] between steps when running as fast as possible
 ASK_AGAIN = 0.2  # [s] wall time after which lock step repeats its question
@@ -37,7 +38,27 @@ BRIDGE_PARAMETERS = (
         'Robot: a name in config/robots or a path to a .yaml file.',
         read_only=True,
     ),
-    Spec('terrain', 'flat', 'Ground the robot lies on.', choices=tuple(TERRAINS), read_only=True),
+    Spec(
+        'terrain',
+        'flat',
+        'Ground: a name in config/terrains or a path to a .yaml file.',
+        read_only=True,
+    ),
+    Spec(
+        'peg_spacing', 0.0, "Between pegs [BL]; 0: the terrain's.", 'BL', 0.0, 10.0, read_only=True
+    ),
+    Spec(
+        'peg_friction',
+        -1.0,
+        "Coefficient between body and peg; -1: the terrain's.",
+        '',
+        -1.0,
+        5.0,
+        read_only=True,
+    ),
+    Spec(
+        'rock_size', 0.0, "Of rocks, mean [BL]; 0: the terrain's.", 'BL', 0.0, 10.0, read_only=True
+    ),
     Spec(
         'real_time_factor', 1.0, 'Simulated over real time; 0 is as fast as it can.', '', 0, 1000
     ),
@@ -89,9 +110,20 @@ def make_config(values: Mapping[str, Any]) -> SimulationConfig:
         position_noise=values['position_noise'],
         effort_noise=values['effort_noise'],
         seed=values['seed'],
-        terrain=values['terrain'],
+        terrain=make_terrain(values),
         gui=values['gui'],
     )
+
+
+def make_terrain(values: Mapping[str, Any]) -> TerrainConfig:
+    """Ground the parameters describe: a file, and what departs from it."""
+    own = {
+        'spacing_bl': values['peg_spacing'] or None,
+        'peg_friction': values['peg_friction'] if values['peg_friction'] >= 0.0 else None,
+        'rock_size_bl': values['rock_size'] or None,
+    }
+    given = {name: value for name, value in own.items() if value is not None}
+    return replace(load_terrain(values['terrain']), **given)
 
 
 class PyBulletBridge(Node):

@@ -15,6 +15,7 @@ STANCE = 0.005  # [m] feet alternate left and right of the axis by this, or the 
 # so a foot's force leaves the direction of its slip where the body yields unevenly (46 deg off for
 # bare boxes, an offset turn 9 % short); inertia far above the box's own evens that out.
 REFLECTED_INERTIA = 0.01
+SOLID_LIFT = 0.002  # [m] of solid bodies, out of reach of contact search with level ground
 
 
 def ride_height(robot: Robot) -> float:
@@ -22,11 +23,16 @@ def ride_height(robot: Robot) -> float:
     return 0.5 * robot.module_width + FOOT_CLEARANCE
 
 
-def urdf_from_robot(robot: Robot) -> str:
+def urdf_from_robot(robot: Robot, solid: str = '') -> str:
     """Describe the robot as a chain of boxes, head first, each on two spheres per module length.
 
     The spheres sit at the Gauss nodes of their module, so they load the ground as a uniform line
     would (mean and second moment). The head is the base; its frame is at joint 1, x forward.
+
+    Args:
+        robot: the robot.
+        solid: what each body collides with besides its feet: '' nothing, enough on level ground;
+            'round' capsules, smooth along upright pegs; 'square' boxes, which lie without rolling.
 
     Returns:
         URDF text. Link `head`, then `module_1`.. named after the joint in front of each.
@@ -38,12 +44,18 @@ def urdf_from_robot(robot: Robot) -> str:
         ('odd', '0.3 0.45 0.55 1'),
     ):
         ET.SubElement(ET.SubElement(root, 'material', name=name), 'color', rgba=rgba)
-    _add_body(root, robot, 'head', robot.head_length, 0.5 * robot.head_length, 'head', 0)
+    head = _add_body(root, robot, 'head', robot.head_length, 0.5 * robot.head_length, 'head', 0)
+    if solid:
+        _add_solid(head, robot, (0.0, robot.head_length), (False, True), solid)
     parent, joint_x = 'head', 0.0
     for i, (name, axis) in enumerate(zip(robot.joint_names, robot.joint_axes)):
         child = f'module_{i + 1}'
         colour = 'odd' if axis == 'yaw' else 'even'
-        _add_body(root, robot, child, robot.module_length, -0.5 * robot.module_length, colour, i)
+        middle = -0.5 * robot.module_length
+        body = _add_body(root, robot, child, robot.module_length, middle, colour, i)
+        if solid:
+            last = i == robot.n_joints - 1
+            _add_solid(body, robot, (-robot.module_length, 0.0), (last, False), solid)
         joint = ET.SubElement(root, 'joint', name=name, type='revolute')
         ET.SubElement(joint, 'parent', link=parent)
         ET.SubElement(joint, 'child', link=child)
@@ -70,8 +82,8 @@ def _add_body(
     centre: float,
     colour: str,
     first_segment: int,
-) -> None:
-    """Append one box of the given length whose middle lies at x = centre."""
+) -> ET.Element:
+    """Append and return one box of the given length whose middle lies at x = centre."""
     link = ET.SubElement(root, 'link', name=name)
     mass = robot.module_mass * length / robot.module_length
     width = robot.module_width
@@ -102,3 +114,30 @@ def _add_body(
             ET.SubElement(collision, 'origin', xyz=f'{x} {y} {z}')
             foot = ET.SubElement(ET.SubElement(collision, 'geometry'), 'sphere')
             foot.set('radius', str(FOOT_RADIUS))
+    return link
+
+
+def _add_solid(
+    link: ET.Element,
+    robot: Robot,
+    along: tuple[float, float],
+    is_tip: tuple[bool, bool],
+    solid: str,
+) -> None:
+    """Make a body solid from x to x [m]; round ends reach half around joints, none past a tip."""
+    collision = ET.SubElement(link, 'collision')
+    geometry = ET.SubElement(collision, 'geometry')
+    width = robot.module_width
+    if solid == 'square':
+        origin = f'{sum(along) / 2} 0 {SOLID_LIFT}'
+        ET.SubElement(collision, 'origin', xyz=origin)
+        box = ET.SubElement(geometry, 'box')
+        box.set('size', f'{along[1] - along[0]} {width} {width}')
+        return
+    back = along[0] + 0.5 * width * is_tip[0]
+    front = along[1] - 0.5 * width * is_tip[1]
+    origin = f'{(back + front) / 2} 0 {SOLID_LIFT}'
+    ET.SubElement(collision, 'origin', xyz=origin, rpy=f'0 {math.pi / 2} 0')
+    capsule = ET.SubElement(geometry, 'capsule')
+    capsule.set('radius', str(0.5 * width))
+    capsule.set('length', str(front - back))

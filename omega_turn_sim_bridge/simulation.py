@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import tempfile
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import TracebackType
 
@@ -15,13 +15,17 @@ from omega_turn_ros.errors import BadInputError, SimulationError
 from omega_turn_ros.robot import STANDARD_GRAVITY, Robot
 from omega_turn_sim_bridge.engine import pybullet
 from omega_turn_sim_bridge.robot import ride_height, urdf_from_robot
-from omega_turn_sim_bridge.terrain import build_terrain
+from omega_turn_sim_bridge.terrain import build_ground
+from omega_turn_sim_bridge.terrain_config import TerrainConfig
 
 Array = NDArray[np.float64]
 
 # Positions in the tuples PyBullet returns.
 JOINT_POSITION, JOINT_VELOCITY, JOINT_MOTOR_TORQUE = 0, 1, 3
 LINK_COM_POSITION, LINK_COM_VELOCITY = 0, 6
+CONTACT_BODY_B, CONTACT_DISTANCE = 2, 8
+
+LOWERING = 2.0  # [s] uncounted, in which the robot comes to rest on uneven ground
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +45,7 @@ class SimulationConfig:
         position_noise: standard deviation of the joint position readings [rad].
         effort_noise: standard deviation of the effort readings [N m].
         seed: of the noise and of random terrains.
-        terrain: name of the ground, see `terrain.TERRAINS`.
+        terrain: the ground and what lies on it.
         gui: show PyBullet's window.
     """
 
@@ -56,7 +60,7 @@ class SimulationConfig:
     position_noise: float = 0.0
     effort_noise: float = 0.0
     seed: int = 0
-    terrain: str = 'flat'
+    terrain: TerrainConfig = field(default_factory=TerrainConfig)
     gui: bool = False
 
     def __post_init__(self) -> None:
@@ -70,11 +74,11 @@ class SimulationConfig:
             'position_noise',
             'effort_noise',
         )
-        for field in (*positive, *not_negative):
-            value = getattr(self, field)
-            if not math.isfinite(value) or value < 0 or (field in positive and value == 0):
-                expected = 'a finite number > 0' if field in positive else 'a finite number >= 0'
-                raise BadInputError(field, value, expected)
+        for name in (*positive, *not_negative):
+            value = getattr(self, name)
+            if not math.isfinite(value) or value < 0 or (name in positive and value == 0):
+                expected = 'a finite number > 0' if name in positive else 'a finite number >= 0'
+                raise BadInputError(name, value, expected)
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,6 +156,11 @@ class Simulation:
         return self._client
 
     @property
+    def terrain_bodies(self) -> tuple[int, ...]:
+        """PyBullet's ids of what makes the ground, the level ground first."""
+        return self._ground.bodies
+
+    @property
     def body(self) -> int:
         """PyBullet's id of the robot."""
         return self._body
@@ -164,7 +173,8 @@ class Simulation:
         """
         self._check_open()
         front = self.robot.length * 0.5 - self.robot.head_length
-        position = (front, 0.0, ride_height(self.robot))
+        above = self._ground.top + ride_height(self.robot)
+        position = (front, 0.0, above)
         pybullet.resetBasePositionAndOrientation(
             self._body, self._base_frame(position), (0, 0, 0, 1), physicsClientId=self._client
         )
@@ -179,6 +189,14 @@ class Simulation:
         self._effort_steps = 0
         self._observed = False
         self._rng = np.random.default_rng(self.config.seed)
+        if self._ground.top > 0.0:
+            self._lower()
+
+    def _lower(self) -> None:
+        """Let the straight robot sink onto uneven ground, until it lies still."""
+        for _ in range(round(LOWERING / self.config.time_step)):
+            self._drive(np.zeros(self.robot.n_joints))
+            pybullet.stepSimulation(physicsClientId=self._client)
 
     def command(self, positions: ArrayLike) -> None:
         """Set the motor targets, held until the next call.
@@ -216,17 +234,7 @@ class Simulation:
             rate = np.clip(rate, -self._velocity_limit, self._velocity_limit)
             self._reference += dt * rate
             self._reference_rate = rate
-            pybullet.setJointMotorControlArray(
-                self._body,
-                self._joints,
-                pybullet.POSITION_CONTROL,
-                targetPositions=self._reference.tolist(),
-                targetVelocities=rate.tolist(),
-                forces=self._forces,
-                positionGains=self._position_gains,
-                velocityGains=self._velocity_gains,
-                physicsClientId=self._client,
-            )
+            self._drive(rate)
             pybullet.stepSimulation(physicsClientId=self._client)
             self._steps += 1
             # Commands come in stairs, so torques ripple in step with them: a reading that looked
@@ -258,6 +266,21 @@ class Simulation:
             efforts = efforts + self._rng.normal(0.0, self.config.effort_noise, efforts.shape)
         return Observation(self.time, positions, velocities, efforts, pose, twist)
 
+    def obstacle_depth(self) -> float:
+        """How deep the robot presses into obstacles or into itself, at most [m].
+
+        Contact is compliant: a millimetre or two is its give, half a body a robot that passes
+        through what should stop it.
+
+        Raises:
+            SimulationError: the client has been closed.
+        """
+        self._check_open()
+        level = self._ground.bodies[0]
+        contacts = pybullet.getContactPoints(self._body, physicsClientId=self._client)
+        depths = [-c[CONTACT_DISTANCE] for c in contacts if c[CONTACT_BODY_B] != level]
+        return max(0.0, *depths) if depths else 0.0
+
     def hold_posture(self) -> None:
         """Make the present posture the motor target.
 
@@ -272,6 +295,20 @@ class Simulation:
         if self._client >= 0:
             pybullet.disconnect(physicsClientId=self._client)
             self._client = -1
+
+    def _drive(self, rate: Array) -> None:
+        """Give the motors their reference for the coming step, moving at `rate` [rad/s]."""
+        pybullet.setJointMotorControlArray(
+            self._body,
+            self._joints,
+            pybullet.POSITION_CONTROL,
+            targetPositions=self._reference.tolist(),
+            targetVelocities=rate.tolist(),
+            forces=self._forces,
+            positionGains=self._position_gains,
+            velocityGains=self._velocity_gains,
+            physicsClientId=self._client,
+        )
 
     def _joint_states(self) -> list[tuple]:
         states: list[tuple] = pybullet.getJointStates(
@@ -293,13 +330,18 @@ class Simulation:
             deterministicOverlappingPairs=1,
             physicsClientId=client,
         )
-        self.terrain_bodies = build_terrain(client, config.terrain, config.seed)
+        self._ground = build_ground(
+            client, config.terrain, self.robot, config.friction, config.seed
+        )
+        flags = pybullet.URDF_USE_INERTIA_FROM_FILE
+        if self._ground.solid:
+            # What an obstacle bends beyond the gait must not pass through itself.
+            flags |= pybullet.URDF_USE_SELF_COLLISION
+            flags |= pybullet.URDF_USE_SELF_COLLISION_EXCLUDE_PARENT
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / f'{self.robot.name}.urdf'
-            path.write_text(urdf_from_robot(self.robot))
-            self._body = pybullet.loadURDF(
-                str(path), flags=pybullet.URDF_USE_INERTIA_FROM_FILE, physicsClientId=client
-            )
+            path.write_text(urdf_from_robot(self.robot, solid=self._ground.solid))
+            self._body = pybullet.loadURDF(str(path), flags=flags, physicsClientId=client)
         for link in range(-1, self.robot.n_joints):
             pybullet.changeDynamics(
                 self._body,

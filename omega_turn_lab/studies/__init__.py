@@ -9,6 +9,7 @@ NAMES = (
     'frequency',
     'joints',
     'granular',
+    'pegboard',
     'height',
     'sensitivity',
     'beyond',

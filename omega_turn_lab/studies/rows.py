@@ -84,15 +84,24 @@ def row_of(
     return Row(case, params, quantity, unit, *paper, *ours)
 
 
-def write_json(path: Path, study: str, rows: Sequence[Row], seed: int, seconds: float) -> None:
-    """Write a study's numbers."""
-    record = {
+def write_json(
+    path: Path,
+    study: str,
+    rows: Sequence[Row],
+    seed: int,
+    seconds: float,
+    trials: Sequence[dict[str, Any]] = (),
+) -> None:
+    """Write a study's numbers, and every trial behind them where it has trials."""
+    record: dict[str, Any] = {
         'study': study,
         'rows': [row.to_mapping() for row in rows],
         'seed': seed,
         'version': __version__,
         'seconds': round(seconds, 3),
     }
+    if trials:
+        record['trials'] = list(trials)
     path.write_text(json.dumps(record, indent=1) + '\n', encoding='utf-8')
 
 

@@ -81,7 +81,9 @@ def run_reproduce(options: ReproduceOptions) -> int:
         rows = study.rows(outcome)
         study.draw(outcome, options.out)
         seconds = time.perf_counter() - began
-        write_json(options.out / f'{study.name}.json', study.name, rows, options.seed, seconds)
+        path = options.out / f'{study.name}.json'
+        trials = study.records(outcome)
+        write_json(path, study.name, rows, options.seed, seconds, trials)
         print_table(study.title, rows)
     print(f'{time.perf_counter() - began:.1f} s, files in {options.out}')
     return 0
@@ -104,7 +106,9 @@ def compute_outcome(
         for task in study.designs(plan)
     ]
     played = compute(trials, executor, store, 'playing in PyBullet')
-    return Outcome(plan, outcome.designed, played)
+    asked = [task for study in studies for task in study.trials(outcome)]
+    tried = compute(asked, executor, store, 'trying on terrains') if asked else {}
+    return Outcome(plan, outcome.designed, played, tried)
 
 
 def _checked(options: ReproduceOptions) -> Executor:

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from omega_turn_lab.studies.rows import Row
-from omega_turn_lab.studies.tasks import DesignTask, PhysicsTask, Result
+from omega_turn_lab.studies.tasks import DesignTask, PhysicsTask, Result, Task
 from omega_turn_ros.gaits.library import KINDS
 from omega_turn_ros.gaits.wave_gait import WaveGait
 from omega_turn_ros.robot import Robot
@@ -61,11 +62,13 @@ class Outcome:
         plan: what the studies were told.
         designed: result of each design case.
         played: result of each gait in PyBullet; empty without PyBullet.
+        tried: result of each trial that studies ask for themselves; empty without PyBullet.
     """
 
     plan: Plan
     designed: dict[DesignTask, Result]
     played: dict[PhysicsTask, Result] = field(default_factory=dict)
+    tried: dict[Task, Result] = field(default_factory=dict)
 
     def gait(self, task: DesignTask) -> WaveGait:
         """Return the designed gait."""
@@ -93,6 +96,8 @@ class Study:
         rows: its table.
         draw: its figures, into a folder.
         played: whether its gaits are played in PyBullet too.
+        trials: further trials of the designed gaits in PyBullet.
+        records: of these trials, for the JSON file.
     """
 
     name: str
@@ -101,3 +106,5 @@ class Study:
     rows: Callable[[Outcome], list[Row]]
     draw: Callable[[Outcome, Path], None]
     played: bool = True
+    trials: Callable[[Outcome], Sequence[Task]] = lambda outcome: ()
+    records: Callable[[Outcome], list[dict[str, Any]]] = lambda outcome: []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -31,7 +32,9 @@ class ComplianceConfig:
     Attributes:
         k_f: spatial frequency of the forward wave.
         k_t: spatial frequency of the turning wave.
-        torque_scale: factor on J tau_ext; 1 is the paper's law in N m, 0 switches compliance off.
+        torque_scale: factors on J tau_ext of (forward, turning) wave. (1, 1) is the paper's law in
+            N m: the wave yields to what pushes it. A negative factor makes it push harder against
+            what holds it; 0 keeps a wave as it is.
         relax_rate: offsets return to 0 at this rate without efforts or waves [rad/s].
         law: constants of the admittance law.
         torque: how efforts become external torques.
@@ -39,7 +42,7 @@ class ComplianceConfig:
 
     k_f: float = 1.5
     k_t: float = 1.0
-    torque_scale: float = 1.0
+    torque_scale: tuple[float, float] = (1.0, 1.0)
     relax_rate: float = 0.5
     law: AdmittanceConfig = field(default_factory=AdmittanceConfig)
     torque: TorqueConfig = field(default_factory=TorqueConfig)
@@ -66,11 +69,18 @@ class ComplianceController:
     Args:
         chain: the robot's planar chain, for the torque open ground needs.
         config: settings.
+        needed: predicts the torque open ground needs, as `needed_torques` does.
     """
 
-    def __init__(self, chain: PlanarChain, config: ComplianceConfig) -> None:
+    def __init__(
+        self,
+        chain: PlanarChain,
+        config: ComplianceConfig,
+        needed: Callable[[PlanarChain, Array, Array, float], Array] = needed_torques,
+    ) -> None:
         self.chain = chain
         self.config = config
+        self._needed = needed
 
     def initial_state(self) -> ComplianceState:
         """No offset, no torque."""
@@ -97,12 +107,12 @@ class ComplianceController:
             dt: time since the last step [s], >= 0.
         """
         config = self.config
-        needed = needed_torques(self.chain, angles, rates, config.torque.friction)
+        needed = self._needed(self.chain, angles, rates, config.torque.friction)
         filtered, external = external_torque_step(
             state.filtered, efforts, needed, dt, config.torque
         )
         jacobian = wave_jacobian(*phases, config.k_f, config.k_t, self.chain.n_joints)
-        force = config.torque_scale * (jacobian @ external)
+        force = np.array(config.torque_scale) * (jacobian @ external)
         law = admittance_step(state.admittance, force, dt, config.law)
         return ComplianceState(law, filtered, external)
 

@@ -103,20 +103,26 @@ def _newton(p: Array, v: Array, w: Array, xi: Array, epsilon: float) -> Array:
     return xi
 
 
-def _slip(p: Array, v: Array, xi: Array) -> Array:
-    """Velocity of every point once the body moves with xi, shape (B, P, 2)."""
+def slip_velocities(p: Array, v: Array, xi: Array) -> Array:
+    """Velocity of every point once the body moves with xi [m/s], shape (B, P, 2).
+
+    Args:
+        p: points [m], shape (B, P, 2).
+        v: their velocities at xi = 0 [m/s], shape (B, P, 2).
+        xi: body velocity [m/s, m/s, rad/s], shape (B, 3).
+    """
     turn = xi[:, 2, None, None] * np.stack([-p[..., 1], p[..., 0]], axis=-1)
     return v + xi[:, None, :2] + turn
 
 
 def _dissipation(p: Array, v: Array, w: Array, xi: Array, epsilon: float) -> Array:
-    slip = _slip(p, v, xi)
+    slip = slip_velocities(p, v, xi)
     return np.sqrt((slip**2).sum(axis=-1) + epsilon**2) @ w
 
 
 def _derivatives(p: Array, v: Array, w: Array, xi: Array, epsilon: float) -> tuple[Array, Array]:
     """Gradient (B, 3) and Hessian (B, 3, 3) of the smoothed dissipation."""
-    slip = _slip(p, v, xi)
+    slip = slip_velocities(p, v, xi)
     norm = np.sqrt((slip**2).sum(axis=-1) + epsilon**2)
     x, y = p[..., 0], p[..., 1]
     unit = slip / norm[..., None]
@@ -174,11 +180,21 @@ def joint_torques(
     flat_shape = (-1, chain.n_joints)
     state = chain.state(angles.reshape(flat_shape), rates.reshape(flat_shape))
     xi = solve_balance(state.points, state.velocities, chain.normal_forces)
-    torque = _torques_of_slip(chain, state, _slip(state.points, state.velocities, xi), friction)
+    torque = torques_of_slip(
+        chain, state, slip_velocities(state.points, state.velocities, xi), friction
+    )
     return torque.reshape(angles.shape)
 
 
-def _torques_of_slip(chain: PlanarChain, state: ShapeState, slip: Array, mu: float) -> Array:
+def torques_of_slip(chain: PlanarChain, state: ShapeState, slip: Array, mu: float) -> Array:
+    """Actuator torques against the friction of slipping points [N m], shape (B, N).
+
+    Args:
+        chain: the robot.
+        state: its shapes, batch shape (B,).
+        slip: velocities of the contact points [m/s], shape (B, P, 2).
+        mu: kinetic friction coefficient.
+    """
     # Smoothed as in the balance: only then do the forces of sticking points add up to zero.
     epsilon = SMOOTHING[-1] * _mean_speed(state.velocities, chain.normal_forces)[:, None]
     scale = np.sqrt((slip**2).sum(axis=-1) + np.maximum(epsilon, 1e-150) ** 2)

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from omega_turn_ros.errors import BadInputError, ConvergenceError
 from omega_turn_ros.mechanics.chain import PlanarChain
+from omega_turn_ros.mechanics.force_balance import slip_velocities, torques_of_slip
 from omega_turn_ros.mechanics.force_laws import CoulombFriction, ForceLaw
 from omega_turn_ros.mechanics.kernel import velocities
 from omega_turn_ros.mechanics.trajectory import integrate_twists
@@ -71,6 +72,23 @@ class QuasiStatic:
             raise ConvergenceError(f'force balance: {failed} of {xi.shape[0]} shapes unsolved')
         result: Array = xi.reshape(*q.shape[:-1], 3)
         return result
+
+    def joint_torques(self, angles: ArrayLike, rates: ArrayLike, friction: float) -> Array:
+        """Return what `force_balance.joint_torques` does, sooner; isotropic friction only.
+
+        Args:
+            angles: yaw joint angles [rad], shape (..., N).
+            rates: their time derivatives [rad/s], shape (..., N).
+            friction: kinetic friction coefficient mu.
+
+        Returns:
+            Torques on the link behind each joint, + = counter-clockwise [N m], shape (..., N).
+        """
+        xi = self.body_velocity(angles, rates).reshape(-1, 3)
+        flat = (-1, self.chain.n_joints)
+        state = self.chain.state(np.reshape(angles, flat), np.reshape(rates, flat))
+        slip = slip_velocities(state.points, state.velocities, xi)
+        return torques_of_slip(self.chain, state, slip, friction).reshape(np.shape(angles))
 
     def displacements(self, path: ArrayLike) -> Array:
         """Body displacement in each step along a path of shapes, by the midpoint rule.

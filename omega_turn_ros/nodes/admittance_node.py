@@ -47,7 +47,14 @@ ADMITTANCE_PARAMETERS = (
     Spec(
         'relax_rate', 0.5, 'Offsets return to 0 at this rate without efforts.', 'rad/s', 0.01, 10
     ),
-    Spec('torque_scale', 1.0, 'Factor on J tau_ext; 0 switches yielding off.', '', -100.0, 100.0),
+    Spec(
+        'torque_scale',
+        [1.0, 1.0],
+        'Factors on J tau_ext of (forward, turning) wave: > 0 yields, < 0 pushes back, 0 keeps.',
+        '',
+        -100.0,
+        100.0,
+    ),
     Spec('effort_sign', 0, "+1/-1: effort > 0 drives to + / - angles; 0: robot's.", '', -1, 1),
     Spec('friction', 0.5, 'Friction of open ground; its torque is subtracted.', '', 0.0, 5.0),
     Spec('filter_time', 0.1, 'Low-pass time constant of the external torque.', 's', 0.0, 10.0),
@@ -84,7 +91,7 @@ def make_compliance(values: Mapping[str, Any], robot: Robot) -> ComplianceContro
         values['dead_band'],
     )
     config = ComplianceConfig(
-        gait.k_f, gait.k_t, values['torque_scale'], values['relax_rate'], law, torque
+        gait.k_f, gait.k_t, tuple(values['torque_scale']), values['relax_rate'], law, torque
     )
     return ComplianceController(PlanarChain.of_robot(robot), config)
 

@@ -57,13 +57,15 @@ def test_push_along_a_wave_makes_that_wave_larger(chain: PlanarChain, wave: int)
     assert held(controller, 2.0 * shape, 2.0).admittance.offset[wave] < -0.01
 
 
-@pytest.mark.parametrize(('scale', 'part'), [(0.0, 0.0), (0.5, 0.5)])
-def test_torque_scale_scales_the_yielding(chain: PlanarChain, scale: float, part: float) -> None:
+@pytest.mark.parametrize('scale', [(0.0, 0.0), (0.5, 0.5), (0.5, -1.0)])
+def test_torque_scale_scales_the_yielding_of_each_wave(
+    chain: PlanarChain, scale: tuple[float, float]
+) -> None:
     push = -np.linspace(0.5, 2.0, 8)
     full = held(ComplianceController(chain, ComplianceConfig(law=WIDE)), push)
     less = held(ComplianceController(chain, ComplianceConfig(law=WIDE, torque_scale=scale)), push)
     np.testing.assert_allclose(
-        less.admittance.offset, part * np.array(full.admittance.offset), atol=1e-12
+        less.admittance.offset, np.multiply(scale, full.admittance.offset), atol=1e-12
     )
 
 

@@ -14,7 +14,7 @@ from omega_turn_ros.errors import BadInputError, SimulationError
 from omega_turn_ros.robot import Robot, load_robot
 from omega_turn_sim_bridge.robot import FOOT_CLEARANCE, ride_height
 from omega_turn_sim_bridge.simulation import Observation, Simulation, SimulationConfig
-from omega_turn_sim_bridge.terrain import TERRAINS
+from omega_turn_sim_bridge.terrain_config import TerrainConfig
 
 FIELDS = ('positions', 'velocities', 'efforts', 'pose', 'twist')
 
@@ -315,12 +315,12 @@ def open_clients() -> list[int]:
     ]
 
 
-def test_unknown_terrain_is_refused_by_name_and_leaves_no_client_open(robot: Robot) -> None:
+def test_ground_that_cannot_be_built_leaves_no_client_open(robot: Robot) -> None:
     before = open_clients()
-    with pytest.raises(BadInputError, match=r"^terrain: got 'lava', expected .*'flat'"):
-        Simulation(robot, SimulationConfig(terrain='lava'))
+    too_close = TerrainConfig('pegboard', spacing_bl=0.05)
+    with pytest.raises(BadInputError, match=r'^terrain spacing_bl: got 0.05, expected room'):
+        Simulation(robot, SimulationConfig(terrain=too_close))
     assert open_clients() == before
-    assert 'flat' in TERRAINS
 
 
 def test_closed_simulation_refuses_to_go_on_and_may_be_closed_again(robot: Robot) -> None:

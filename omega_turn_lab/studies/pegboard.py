@@ -1,0 +1,167 @@
+"""Turning among pegs, open loop and compliant (Sec. IV.H, compliant omega turn).
+
+Each placement of the lattice is tried in every mode, so modes are compared in pairs. The paper
+prints no numbers for this experiment, only the claim that compliance turns some 30 % further and
+spreads less at every spacing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from omega_turn_lab.obstacle_trial import ObstacleTrial
+from omega_turn_lab.studies.peg_pictures import draw_pegboard
+from omega_turn_lab.studies.rows import Row, params_of
+from omega_turn_lab.studies.spread import spread_of
+from omega_turn_lab.studies.study import Outcome, Plan, Study
+from omega_turn_lab.studies.tasks import DesignTask, Result
+from omega_turn_ros.compliance.admittance import AdmittanceConfig
+from omega_turn_ros.compliance.controller import ComplianceConfig
+from omega_turn_ros.compliance.external_torque import TorqueConfig
+from omega_turn_sim_bridge.terrain_config import TerrainConfig, load_terrain
+
+NAME = 'pegboard'
+SPACINGS_BL = (0.2, 0.3, 0.4, 0.5, 0.6)
+PLACEMENTS = 20
+FEW = 6  # placements of the modes that are shown for comparison only
+UNBOUNDED = AdmittanceConfig(offset_limit=1.2)  # the paper bounds no offset
+PEER = AdmittanceConfig((0.1, 0.1), (3.0, 3.0), (3.0, 3.0), offset_limit=1.2)
+OPEN, YIELDING = 'open loop', 'yielding'
+MODES: dict[str, ComplianceConfig | None] = {
+    OPEN: None,
+    # M, B, K of the paper; an outside push moves the amplitudes the way it pushes.
+    YIELDING: ComplianceConfig(law=UNBOUNDED),
+    # The same with the efforts taken as they are: the ground's friction counts as a push.
+    'yielding, raw efforts': ComplianceConfig(
+        law=UNBOUNDED, torque=TorqueConfig(friction=0.0, dead_band=0.0)
+    ),
+    # The other sign: what holds a wave makes it push harder.
+    'pushing': ComplianceConfig(torque_scale=(-0.5, -0.5)),
+    # Constants of the public shape-compliance controller kmkar31/snakelib.
+    "snakelib's constants": ComplianceConfig(law=PEER),
+}
+COMPARED = (OPEN, YIELDING)
+
+
+def placements(mode: str) -> range:
+    """Seeds a mode is tried on."""
+    return range(PLACEMENTS if mode in COMPARED else FEW)
+
+
+def trial(outcome: Outcome, spacing: float, mode: str, seed: int) -> ObstacleTrial:
+    """One turn of two cycles among pegs, `spacing` body lengths apart."""
+    ground = {**asdict(load_terrain('pegboard')), 'spacing_bl': spacing}
+    gait = outcome.gait(_task(outcome.plan))
+    terrain = TerrainConfig(**ground)
+    return ObstacleTrial(outcome.plan.robot, gait, terrain, seed, MODES[mode])
+
+
+def _task(plan: Plan) -> DesignTask:
+    return plan.design(1.0)
+
+
+def _on_open_ground(outcome: Outcome, mode: str) -> ObstacleTrial:
+    plan = outcome.plan
+    return ObstacleTrial(plan.robot, outcome.gait(_task(plan)), compliance=MODES[mode])
+
+
+def _trials(outcome: Outcome) -> list[ObstacleTrial]:
+    # Placement by placement, so that an interrupted run has a little of everything.
+    among_pegs = [
+        trial(outcome, spacing, mode, seed)
+        for seed in range(PLACEMENTS)
+        for spacing in SPACINGS_BL
+        for mode in MODES
+        if seed in placements(mode)
+    ]
+    return [*(_on_open_ground(outcome, mode) for mode in COMPARED), *among_pegs]
+
+
+def angles(outcome: Outcome, spacing: float, mode: str) -> list[float]:
+    """Mean angle per cycle of each placement [deg]."""
+    return [
+        outcome.tried[trial(outcome, spacing, mode, seed)]['angle_deg']
+        for seed in placements(mode)
+    ]
+
+
+def _rows(outcome: Outcome) -> list[Row]:
+    task = _task(outcome.plan)
+    params = params_of(task)
+    theory = outcome.designed[task]['angle_deg']
+    rows = []
+    for mode in COMPARED:
+        free = outcome.tried.get(_on_open_ground(outcome, mode))
+        played = None if free is None else free['angle_deg']
+        rows.append(
+            Row(f'open ground, {mode}', params, 'angle', 'deg', None, None, theory, played)
+        )
+    if not outcome.tried:
+        return rows
+    for spacing in SPACINGS_BL:
+        for mode in MODES:
+            rows += _mode_rows(outcome, spacing, mode, {**params, 'spacing_bl': spacing})
+    return rows
+
+
+def _mode_rows(outcome: Outcome, spacing: float, mode: str, params: dict[str, float]) -> list[Row]:
+    """Angle of a mode, and what it gains over open loop on the same placements."""
+    case = f'{spacing:g} BL, {mode}'
+    found = angles(outcome, spacing, mode)
+    spread = spread_of(found, outcome.plan.seed)
+    numbers = {('angle', 'deg'): spread.mean, ('angle_std', 'deg'): spread.deviation}
+    if mode != OPEN:
+        without = angles(outcome, spacing, OPEN)[: len(found)]
+        gain = spread_of([b - a for a, b in zip(without, found)], outcome.plan.seed)
+        numbers[('gain', 'deg')] = gain.mean
+        numbers[('gain_low', 'deg')] = gain.low
+        numbers[('gain_high', 'deg')] = gain.high
+        mean = sum(without) / len(without)
+        if mean > 0.0:
+            numbers[('ratio', '1')] = spread.mean / mean
+    return [
+        Row(case, params, quantity, unit, None, None, None, value)
+        for (quantity, unit), value in numbers.items()
+    ]
+
+
+def _record(task: ObstacleTrial, result: Result) -> dict[str, Any]:
+    """A trial without its motion."""
+    kept = {k: v for k, v in result.items() if k not in ('time', 'poses', 'yaw_angles')}
+    mode = next(name for name, config in MODES.items() if config == task.compliance)
+    kind, spacing = task.terrain.kind, task.terrain.spacing_bl
+    where = {'terrain': kind, 'spacing_bl': spacing if kind == 'pegboard' else None}
+    return {**where, 'mode': mode, 'seed': task.seed, **kept}
+
+
+def _records(outcome: Outcome) -> list[dict[str, Any]]:
+    if not outcome.tried:
+        return []
+    return [_record(task, outcome.tried[task]) for task in _trials(outcome)]
+
+
+def _draw(outcome: Outcome, out: Path) -> None:
+    if not outcome.tried:
+        return
+    seed = outcome.plan.seed
+    curves = {
+        mode: [spread_of(angles(outcome, s, mode), seed) for s in SPACINGS_BL] for mode in MODES
+    }
+    free = outcome.tried[_on_open_ground(outcome, OPEN)]['angle_deg']
+    pictured = {mode: trial(outcome, 0.3, mode, 0) for mode in COMPARED}
+    motions = {mode: (task, outcome.tried[task]) for mode, task in pictured.items()}
+    draw_pegboard(out / f'{NAME}.png', SPACINGS_BL, curves, free, motions)
+
+
+STUDY = Study(
+    NAME,
+    'Omega turn among pegs: angle per cycle, two cycles per trial',
+    lambda plan: [_task(plan)],
+    _rows,
+    _draw,
+    played=False,
+    trials=_trials,
+    records=_records,
+)

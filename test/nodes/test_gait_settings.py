@@ -131,8 +131,8 @@ def test_what_is_fixed_at_the_start_says_so(
         ('gait_node', {'period': 3.0}, 'period.*3.0.*at least 4'),
         ('gait_node', {'step_limit': 0.01}, 'step_limit.*0.01.*at least 0.01'),
         ('gait_node', {'position_limit': 1.0}, 'gait.*omega.*within 1.0 rad'),
-        ('gait_node', {'robot': 'centipede'}, 'robots.*centipede.*limbless16'),
-        ('admittance_node', {'gait': 'moonwalk'}, 'gaits.*moonwalk.*omega'),
+        ('gait_node', {'robot': 'centipede'}, 'robot.*centipede.*limbless16'),
+        ('admittance_node', {'gait': 'moonwalk'}, 'gait.*moonwalk.*omega'),
         ('pybullet_bridge', {'rate': 300.0}, 'physics_rate.*200.*multiple of rate = 300'),
         ('pybullet_bridge', {'terrain': 'swamp'}, 'terrain.*swamp.*flat'),
     ],
@@ -295,7 +295,7 @@ def test_moves_keep_the_step_limit_and_arrive_all_the_same(graph: Graph) -> None
 
 def test_the_joint_limit_holds_where_offsets_would_bend_over_it(graph: Graph) -> None:
     turner = Turner(graph, use_compliance=True)
-    turner.robot.offsets = (0.5, 0.5)
+    turner.robot.offsets = (0.5, -0.5)
     turner.start_turn(1.5)
     turner.wait_for_end()
     assert np.abs(turner.watch.positions).max() == pytest.approx(ROBOT.position_limit)

@@ -25,6 +25,9 @@ JOINT_POSITION, JOINT_VELOCITY, JOINT_MOTOR_TORQUE = 0, 1, 3
 LINK_COM_POSITION, LINK_COM_VELOCITY = 0, 6
 CONTACT_BODY_B, CONTACT_DISTANCE = 2, 8
 
+BULLET_DAMPING = 0.1  # [N s/m] what a body has that was given none
+OBSTACLE_STIFFNESS = 4e4  # [N/m] a jam presses a peg 5 mm into the body; at 5e3 it was 29 mm
+
 LOWERING = 2.0  # [s] uncounted, in which the robot comes to rest on uneven ground
 
 
@@ -342,12 +345,13 @@ class Simulation:
             path = Path(folder) / f'{self.robot.name}.urdf'
             path.write_text(urdf_from_robot(self.robot, solid=self._ground.solid))
             self._body = pybullet.loadURDF(str(path), flags=flags, physicsClientId=client)
+        stiffness = self._body_stiffness()
         for link in range(-1, self.robot.n_joints):
             pybullet.changeDynamics(
                 self._body,
                 link,
                 lateralFriction=config.friction,
-                contactStiffness=config.contact_stiffness,
+                contactStiffness=stiffness,
                 contactDamping=config.contact_damping,
                 linearDamping=0.0,
                 angularDamping=0.0,
@@ -358,6 +362,27 @@ class Simulation:
         self._position_gains = [0.3] * self.robot.n_joints
         self._velocity_gains = [1.0] * self.robot.n_joints
         self.reset()
+
+    def _body_stiffness(self) -> float:
+        """Contact stiffness of the robot's bodies [N/m]; what carries it makes up for the rest.
+
+        Bullet puts the stiffnesses of two bodies in series. On open ground all the give is the
+        feet's. Among obstacles a foot's give would let the motors press pegs half into the body,
+        so there the body is stiff and the ground soft.
+        """
+        soft = self.config.contact_stiffness
+        if not self._ground.solid:
+            return soft
+        stiff = max(OBSTACLE_STIFFNESS, 2.0 * soft)
+        for body in self._ground.carriers:
+            pybullet.changeDynamics(
+                body,
+                -1,
+                contactStiffness=1.0 / (1.0 / soft - 1.0 / stiff),
+                contactDamping=BULLET_DAMPING,
+                physicsClientId=self._client,
+            )
+        return stiff
 
     def _base_frame(self, link_frame: tuple[float, float, float]) -> tuple[float, float, float]:
         """Position of the base's centre of mass, which PyBullet's base calls speak of."""

@@ -15,11 +15,13 @@ class Ground:
 
     Attributes:
         bodies: PyBullet's ids; the level ground first.
+        carriers: those of them that carry the robot's weight.
         solid: bodies the robot needs to meet what lies there, see `urdf_from_robot`.
         top: height of the highest thing the straight robot can come to lie on [m].
     """
 
     bodies: tuple[int, ...]
+    carriers: tuple[int, ...]
     solid: str = ''
     top: float = 0.0
 
@@ -45,7 +47,7 @@ def build_ground(
         from omega_turn_sim_bridge.pegboard import build_pegs
 
         pegs = build_pegs(client, peg_positions(config, robot, seed), config, friction)
-        return Ground((level, *pegs), solid='round')
+        return Ground((level, *pegs), (level,), solid='round')
     if config.kind == 'rocks':
         from omega_turn_sim_bridge.rocks import build_rocks, settled_pile
 
@@ -57,8 +59,8 @@ def build_ground(
             pybullet.resetBasePositionAndOrientation(
                 level, (0, 0, soil), (0, 0, 0, 1), physicsClientId=client
             )
-        return Ground((level, *rocks), solid='square', top=top)
-    return Ground((level,))
+        return Ground((level, *rocks), (level, *rocks), solid='square', top=top)
+    return Ground((level,), (level,))
 
 
 def _level(client: int) -> int:

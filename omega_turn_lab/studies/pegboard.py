@@ -25,7 +25,7 @@ from omega_turn_sim_bridge.terrain_config import TerrainConfig, load_terrain
 NAME = 'pegboard'
 SPACINGS_BL = (0.2, 0.3, 0.4, 0.5, 0.6)
 PLACEMENTS = 20
-FEW = 6  # placements of the modes that are shown for comparison only
+FEW = 4  # placements of the modes that are shown for comparison only
 UNBOUNDED = AdmittanceConfig(offset_limit=1.2)  # the paper bounds no offset
 PEER = AdmittanceConfig((0.1, 0.1), (3.0, 3.0), (3.0, 3.0), offset_limit=1.2)
 OPEN, YIELDING = 'open loop', 'yielding'
@@ -33,7 +33,8 @@ MODES: dict[str, ComplianceConfig | None] = {
     OPEN: None,
     # M, B, K of the paper; an outside push moves the amplitudes the way it pushes.
     YIELDING: ComplianceConfig(law=UNBOUNDED),
-    # The same with the efforts taken as they are: the ground's friction counts as a push.
+    'yielding, 0.3 of it': ComplianceConfig(torque_scale=(0.3, 0.3), law=UNBOUNDED),
+    # The paper's gain with the efforts taken as they are: the ground's friction counts as a push.
     'yielding, raw efforts': ComplianceConfig(
         law=UNBOUNDED, torque=TorqueConfig(friction=0.0, dead_band=0.0)
     ),

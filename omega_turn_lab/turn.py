@@ -25,6 +25,7 @@ from omega_turn_ros.nodes.runner import ENDINGS
 
 # [deg] left at an end that was meant: twice the gait node's usual heading_tolerance.
 MEANT = 2.0
+HEARSAY = 0.5  # [s] topics are not in order among each other
 
 
 def run_turn(deg: float, namespace: str, domain_id: int | None, timeout: float) -> int:
@@ -83,6 +84,8 @@ def _turn(
         _follow(executor, client, abs(deg), interrupted)
         if not client.over:
             return _end(executor, client, timeout, 130)
+        if abs(math.degrees(client.left)) > MEANT:
+            _hear_out(executor, client)
     finally:
         client.destroy_node()
     _check_end(client)
@@ -100,6 +103,14 @@ def _end(executor: SingleThreadedExecutor, client: TurnClient, timeout: float, c
     text = f'turn ended on request, {left:.1f} deg left: the body straightens'
     print(f'{text}, and an unfinished cycle mostly loses its angle', file=sys.stderr)
     return code
+
+
+def _hear_out(executor: SingleThreadedExecutor, client: TurnClient) -> None:
+    """Wait for the command of another client, which may arrive after what it did."""
+    left, end = client.left, time.monotonic() + HEARSAY
+    while client.other is None and not client.gone and time.monotonic() < end:
+        executor.spin_once(timeout_sec=0.05)
+    client.left = left
 
 
 def _check_end(client: TurnClient) -> None:

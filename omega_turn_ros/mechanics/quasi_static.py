@@ -11,14 +11,15 @@ from numpy.typing import ArrayLike, NDArray
 
 from omega_turn_ros.errors import BadInputError, ConvergenceError
 from omega_turn_ros.mechanics.chain import PlanarChain
-from omega_turn_ros.mechanics.force_balance import slip_velocities, torques_of_slip
-from omega_turn_ros.mechanics.force_laws import CoulombFriction, ForceLaw
+from omega_turn_ros.mechanics.force_balance import joint_torques, slip_velocities, torques_of_slip
+from omega_turn_ros.mechanics.force_laws import COULOMB, CoulombFriction, ForceLaw
 from omega_turn_ros.mechanics.kernel import velocities
 from omega_turn_ros.mechanics.trajectory import integrate_twists
 
 Array = NDArray[np.float64]
 
 ISOTROPIC = CoulombFriction()
+STICKING = 1e-3  # slip of a point over the mean shape speed below which it may stick
 
 
 class QuasiStatic:
@@ -83,12 +84,24 @@ class QuasiStatic:
 
         Returns:
             Torques on the link behind each joint, + = counter-clockwise [N m], shape (..., N).
+
+        Raises:
+            BadInputError: the law is not isotropic friction.
         """
+        if self.law.kind != COULOMB:
+            raise BadInputError('law', self.law, 'isotropic Coulomb friction')
         xi = self.body_velocity(angles, rates).reshape(-1, 3)
         flat = (-1, self.chain.n_joints)
-        state = self.chain.state(np.reshape(angles, flat), np.reshape(rates, flat))
+        q, dq = np.reshape(angles, flat), np.reshape(rates, flat)
+        state = self.chain.state(q, dq)
         slip = slip_velocities(state.points, state.velocities, xi)
-        return torques_of_slip(self.chain, state, slip, friction).reshape(np.shape(angles))
+        torques = torques_of_slip(self.chain, state, slip, friction)
+        # A point that sticks has a force, but no slip to tell it by: the smoothed balance has.
+        speeds = np.hypot(slip[..., 0], slip[..., 1])
+        sticks = speeds.min(axis=-1) < STICKING * np.abs(state.velocities).mean(axis=(-2, -1))
+        if sticks.any():
+            torques[sticks] = joint_torques(self.chain, q[sticks], dq[sticks], friction)
+        return torques.reshape(np.shape(angles))
 
     def displacements(self, path: ArrayLike) -> Array:
         """Body displacement in each step along a path of shapes, by the midpoint rule.

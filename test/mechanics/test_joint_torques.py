@@ -6,8 +6,11 @@ import numpy as np
 import pytest
 from plain_chain import PlainChain, RandomMotions
 
+from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.mechanics.chain import PlanarChain
 from omega_turn_ros.mechanics.force_balance import body_velocity, joint_torques
+from omega_turn_ros.mechanics.force_laws import CoulombFriction
+from omega_turn_ros.mechanics.quasi_static import QuasiStatic
 
 MU = 0.5
 # Friction is smoothed over 1e-5 of the mean slip, which takes about that share of the work.
@@ -123,3 +126,18 @@ def test_body_at_rest_needs_no_torque(chain: PlanarChain, motions: RandomMotions
     still = joint_torques(chain, motions.angles, 0.0 * motions.rates, MU)
     assert still.shape == motions.angles.shape
     assert (still == 0.0).all()
+
+
+def test_compiled_torques_are_those_of_the_numpy_balance(
+    chain: PlanarChain, motions: RandomMotions
+) -> None:
+    slow = joint_torques(chain, motions.angles, motions.rates, 0.5)
+    fast = QuasiStatic(chain).joint_torques(motions.angles, motions.rates, 0.5)
+    np.testing.assert_allclose(fast, slow, rtol=0.0, atol=1e-3 * np.abs(slow).max())
+
+
+def test_compiled_torques_of_another_law_are_refused(
+    chain: PlanarChain, motions: RandomMotions
+) -> None:
+    with pytest.raises(BadInputError, match='law'):
+        QuasiStatic(chain, CoulombFriction(2.0)).joint_torques(motions.angles, motions.rates, 0.5)

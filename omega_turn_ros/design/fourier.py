@@ -13,7 +13,14 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from omega_turn_ros.design.objective import Coefficients, cost_of, finish, turning_speed, turns
+from omega_turn_ros.design.objective import (
+    Coefficients,
+    cost_of,
+    finish,
+    likeness_of,
+    turning_speed,
+    turns,
+)
 from omega_turn_ros.design.problem import FINE, Design, DesignProblem
 from omega_turn_ros.design.search import search
 from omega_turn_ros.errors import BadInputError
@@ -49,7 +56,8 @@ def design_fourier(
     candidates[:, 2 * terms] = rng.uniform(-np.pi, np.pi, SCREENED * starts)
     coarse = cost_of(problem, coefficients_of, _value)
     fine = cost_of(replace(problem, samples=FINE), coefficients_of, _value, FINE_STRIDE)
-    found = search(coarse, fine, candidates, starts, seed)
+    likeness = likeness_of(problem, coefficients_of)
+    found = search(coarse, fine, likeness, candidates, starts, seed)
     return finish(problem, gait_of(problem, found.best), found, starts, 'fourier')
 
 

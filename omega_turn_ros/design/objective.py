@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from omega_turn_ros.design.problem import Design, DesignProblem
-from omega_turn_ros.design.search import Cost, SearchResult
+from omega_turn_ros.design.search import Cost, Likeness, SearchResult
 from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.gaits.fourier_gait import fourier_waves
 from omega_turn_ros.gaits.two_wave import two_wave_angles
@@ -33,15 +33,31 @@ def cost_of(
         value: of closed paths, shape (P, T, N), the larger the better, shape (P,).
         stride: the value is taken on every so many samples.
     """
-    k_f, k_t, n = problem.k_f, problem.k_t, problem.chain.n_joints
 
     def cost(x: Array) -> Array:
-        forward, tau_f, turning, tau_t = fourier_waves(problem.phases, *family(x))
-        paths = two_wave_angles(forward, tau_f, turning, tau_t, k_f, k_t, n)
+        paths = _paths(problem, family, x)
         factors = np.array([problem.feasible_factor(path) for path in paths])
         return -value(problem, factors[:, None, None] * paths[:, ::stride])
 
     return cost
+
+
+def likeness_of(problem: DesignProblem, family: Callable[[Array], Coefficients]) -> Likeness:
+    """Direction of parameter vectors' gaits in the space of paths; mirrored gaits are opposite."""
+
+    def likeness(x: Array) -> Array:
+        flat = _paths(problem, family, x).reshape(len(x), -1)
+        directions: Array = flat / np.linalg.norm(flat, axis=1, keepdims=True)
+        return directions
+
+    return likeness
+
+
+def _paths(problem: DesignProblem, family: Callable[[Array], Coefficients], x: Array) -> Array:
+    """Closed paths of parameter vectors at any scale [rad], shape (P, T, N), of (P, D)."""
+    forward, tau_f, turning, tau_t = fourier_waves(problem.phases, *family(x))
+    n = problem.chain.n_joints
+    return two_wave_angles(forward, tau_f, turning, tau_t, problem.k_f, problem.k_t, n)
 
 
 def turns(problem: DesignProblem, paths: Array) -> Array:

@@ -1,8 +1,8 @@
 """Many short climbs, then CMA-ES from the best few of the tops they found.
 
 The turn per cycle has several basins of much the same size, so breadth comes first: quasi-Newton
-climbs reach the basin of each start in about a hundred costs. They stall where a limit becomes
-active, which CMA-ES does not mind.
+climbs, from starts that differ, reach the basin of each start in about a hundred costs. They
+stall where a limit becomes active, which CMA-ES does not mind.
 """
 
 from __future__ import annotations
@@ -18,13 +18,15 @@ from scipy.optimize import minimize
 
 Array = NDArray[np.float64]
 Cost = Callable[[Array], Array]  # of parameter vectors, shape (P, D): shape (P,)
+Likeness = Callable[[Array], Array]  # of parameter vectors (P, D): unit vectors, shape (P, F)
 
 DIFFERENCE = 1e-3  # of parameters, for gradients
-CLIMB = 10  # quasi-Newton iterations
+CLIMB, LINE_SEARCH = 10, 5  # gradients of a climb, and of each of its line searches, at most
+ALIKE_STARTS, ALIKE_TOPS = 0.7, 0.95  # cosine from which two gaits count as one
 FOLLOWED = 3  # tops that differ, from which CMA-ES goes on
 STEP = 0.1  # of CMA-ES at first, in every direction
-TOLERANCE, FINE_TOLERANCE = 1e-3, 1e-5  # spread of costs in a generation that has converged
-EVALUATIONS, FINE_EVALUATIONS = 45, 300  # at most, per parameter
+TOLERANCE, FINE_TOLERANCE = 1e-3, 3e-5  # spread of costs in a generation that has converged
+EVALUATIONS, FINE_EVALUATIONS = 45, 100  # at most, per parameter
 SAME = 0.05  # a climb this close to the best, relative, counts as agreeing
 
 
@@ -47,21 +49,27 @@ class SearchResult:
     reason: str
 
 
-def search(coarse: Cost, fine: Cost, candidates: Array, starts: int, seed: int) -> SearchResult:
-    """Minimise from the best of the candidates, then on a finer cost from the winner.
+def search(
+    coarse: Cost, fine: Cost, likeness: Likeness, candidates: Array, starts: int, seed: int
+) -> SearchResult:
+    """Minimise from the best candidates that differ, then on a finer cost from the winner.
 
     Args:
         coarse: cost of parameter vectors, quick.
         fine: the cost that counts.
+        likeness: parameter vectors are as alike as these unit vectors are parallel, either way.
         candidates: parameter vectors to choose the starts from, shape (C, D), C >= starts.
         starts: how many to climb from.
         seed: of CMA-ES; equal seeds give equal results.
     """
-    chosen = np.argsort(coarse(candidates), kind='stable')[:starts]
-    climbs = sorted((_climb(coarse, candidates[i]) for i in chosen), key=lambda climb: climb[1])
-    runs = []
-    for k, top in enumerate(_different(climbs)):
-        runs.append(_strategy(top, STEP, TOLERANCE, EVALUATIONS, seed * 1000 + k))
+    order = np.argsort(coarse(candidates), kind='stable')
+    chosen = _different(likeness(candidates[order]), starts, ALIKE_STARTS)
+    climbs = [_climb(coarse, candidates[order[i]]) for i in chosen]
+    climbs.sort(key=lambda climb: climb[1])
+    tops = np.array([end for end, _, _ in climbs])
+    runs: list[cma.CMAEvolutionStrategy] = []
+    for i in _different(likeness(tops), FOLLOWED, ALIKE_TOPS):
+        runs.append(_strategy(tops[i], STEP, TOLERANCE, EVALUATIONS, seed * 1000 + len(runs)))
         _advance(runs[-1], coarse)
     winner = min((run.result for run in runs), key=lambda result: float(result.fbest))
     agreeing = sum(cost <= winner.fbest + SAME * abs(winner.fbest) for _, cost, _ in climbs)
@@ -89,18 +97,21 @@ def _climb(cost: Cost, start: Array) -> tuple[Array, float, int]:
         count += values.size
         return float(values[0]), (values[1:] - values[0]) / DIFFERENCE
 
-    options = {'maxiter': CLIMB}
-    end = minimize(value_and_gradient, start, jac=True, method='BFGS', options=options)
+    # Without the bounds on line searches, those over a kink take most of the costs.
+    options = {'maxfun': CLIMB, 'maxls': LINE_SEARCH}
+    end = minimize(value_and_gradient, start, jac=True, method='L-BFGS-B', options=options)
     return end.x, float(end.fun), count
 
 
-def _different(climbs: list[tuple[Array, float, int]]) -> list[Array]:
-    """Ends of the best climbs, one of those that came out alike."""
-    tops: list[tuple[Array, float]] = []
-    for end, cost, _ in climbs:
-        if all(abs(cost - other) > 1e-3 * abs(other) for _, other in tops):
-            tops.append((end, cost))
-    return [end for end, _ in tops[:FOLLOWED]]
+def _different(directions: Array, count: int, alike: float) -> list[int]:
+    """First vectors, at most `count`, of which no two are alike."""
+    kept: list[int] = []
+    for i, direction in enumerate(directions):
+        if all(abs(direction @ directions[k]) < alike for k in kept):
+            kept.append(i)
+        if len(kept) == count:
+            break
+    return kept
 
 
 def _strategy(

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from omega_turn_ros.design.problem import Design, DesignProblem
 from omega_turn_ros.design.search import Cost, Likeness, SearchResult
-from omega_turn_ros.errors import BadInputError
+from omega_turn_ros.errors import BadInputError, ConvergenceError
 from omega_turn_ros.gaits.fourier_gait import fourier_waves
 from omega_turn_ros.gaits.two_wave import two_wave_angles
 from omega_turn_ros.gaits.wave_gait import WaveGait
@@ -61,9 +61,27 @@ def _paths(problem: DesignProblem, family: Callable[[Array], Coefficients], x: A
 
 
 def turns(problem: DesignProblem, paths: Array) -> Array:
-    """Angle per cycle of closed paths without its sign [rad], shape (P,), of (P, T, N)."""
+    """Angle per cycle of closed paths without its sign [rad], shape (P,), of (P, T, N).
+
+    A path on which the force balance of a shape is not found counts as turning nothing: one
+    random shape in a million must not end a search.
+    """
+    try:
+        return _turns(problem, paths)
+    except ConvergenceError:
+        return np.array([_turn_or_nothing(problem, path) for path in paths])
+
+
+def _turns(problem: DesignProblem, paths: Array) -> Array:
     result: Array = np.abs(problem.motion.displacements(paths)[..., 2].sum(axis=-1))
     return result
+
+
+def _turn_or_nothing(problem: DesignProblem, path: Array) -> float:
+    try:
+        return float(_turns(problem, path))
+    except ConvergenceError:
+        return 0.0
 
 
 def turning_speed(angle: ArrayLike, path: Array) -> Array:

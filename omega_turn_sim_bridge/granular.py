@@ -57,7 +57,10 @@ class GranularGround:
         self._middles = middles
         self._points = middles[link]
         self._points[np.arange(link.size), link] += chain.point_offsets
+        self._rigid = np.array([1.0, 1j, 1j])[:, None]
         self._masses = robot.module_mass * lengths / robot.module_length
+        self._mass = float(self._masses.sum())
+        self._mass_fractions = self._masses / self._mass
         bodies = np.diff([0, *(robot.yaw_indices + 1), robot.n_joints + 1])
         own = self._masses * (lengths**2 + robot.module_width**2) / 12.0
         self._own_inertia = float((own + REFLECTED_INERTIA * bodies).sum())
@@ -81,29 +84,32 @@ class GranularGround:
             middle [N m], shape (L,).
         """
         axes = np.exp(1j * np.asarray(angles, float))
+        points = self._points @ axes
         into_link = axes.conj()[self._link]
         slip = (self._points @ (1j * np.asarray(rates) * axes) + velocity) * into_link
         middles = self._middles @ axes
-        centre = self._masses @ middles / self._masses.sum()
+        centre = self._mass_fractions @ middles
         # What motion along x, along y and a turn about the centre of mass add to the slip.
-        arms = self._points @ axes - centre
-        rigid = _components(np.array([into_link, 1j * into_link, 1j * arms * into_link]))
-        before = _components(slip)
-        speed = np.sqrt(slip.real**2 + slip.imag**2 + CREEP**2)
-        drag = np.concatenate(self._law.drag(slip.real / speed, slip.imag / speed))
-        drag *= np.tile(self._strengths / speed, 2)
+        rigid = self._rigid * into_link
+        rigid[2] *= points - centre
+        speed = np.hypot(np.abs(slip), CREEP)
+        drag = np.empty((speed.size, 2))
+        drag[:, 0], drag[:, 1] = self._law.drag(slip.real / speed, slip.imag / speed)
+        drag *= (self._strengths / speed)[:, None]
+        # As pairs of real numbers from here.
+        drag, before, rigid = drag.ravel(), slip.view(float), rigid.view(float)
         dragged = rigid * drag
-        system = dragged @ rigid.T + self._inertia(middles - centre) / self._time_step
+        system = dragged @ rigid.T
+        system.flat[::4] += self._inertia(middles - centre) / self._time_step
         after = before - np.linalg.solve(system, dragged @ before) @ rigid
-        along, across = np.split(-drag * after, 2)
-        moments = np.add.reduceat(self._offsets * across, self._first_points)
-        return np.add.reduceat(along + 1j * across, self._first_points), moments
+        force = -(drag * after).view(complex)
+        moments = np.add.reduceat(self._offsets * force.imag, self._first_points)
+        return np.add.reduceat(force, self._first_points), moments
 
     def _inertia(self, middles: Complex) -> Array:
-        """Masses and moment of inertia of the whole body about its centre of mass, (3, 3)."""
-        mass = self._masses.sum()
-        turning = self._masses @ (middles.real**2 + middles.imag**2) + self._own_inertia
-        return np.diag([mass, mass, turning])
+        """Mass, mass and moment of inertia about the centre of mass, where middles count from."""
+        turning = self._masses @ (middles.real**2 + middles.imag**2)
+        return np.array([self._mass, self._mass, turning + self._own_inertia])
 
     def push(self, client: int, body: int) -> None:
         """Let the grains act on the robot during the coming solver step.
@@ -132,8 +138,3 @@ class GranularGround:
             pybullet.applyExternalTorque(
                 body, link, (0.0, 0.0, moment), pybullet.LINK_FRAME, physicsClientId=client
             )
-
-
-def _components(slip: Complex) -> Array:
-    """Parts along all links, then parts across, on the last axis."""
-    return np.concatenate([slip.real, slip.imag], axis=-1)

@@ -148,14 +148,14 @@ def _draw_bodies(
 def _draw_ground(axes: Axes, ground: GroundView) -> None:
     """Draw what stands there and grains; neither widens the view."""
     from matplotlib.collections import PolyCollection
+    from matplotlib.lines import Line2D
 
     view = axes.viewLim
     reach = max(view.width, view.height)  # equal axes may widen the view up to a square
     middle = np.array([0.5 * (view.x0 + view.x1), 0.5 * (view.y0 + view.y1)])
     grains = ground.grains(middle - reach, middle + reach)
-    limits = axes.get_xlim(), axes.get_ylim()
-    axes.plot(*grains.T, '.', color=GRAIN_COLOUR, ms=1.1, mew=0, zorder=0.5)
-    axes.set(xlim=limits[0], ylim=limits[1])
+    dots: dict[str, Any] = {'linestyle': 'none', 'marker': '.', 'ms': 1.1, 'mew': 0, 'zorder': 0.5}
+    axes.add_artist(Line2D(*grains.T, color=GRAIN_COLOUR, **dots))
     obstacles = PolyCollection(ground.obstacles, facecolor=OBSTACLE_COLOUR, zorder=2.95)
     axes.add_collection(obstacles, autolim=False)
 

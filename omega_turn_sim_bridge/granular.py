@@ -27,8 +27,8 @@ class GranularGround:
     wherever slip is slow, and chatters. Here each point meets a drag, -c v: c is the law's force
     over the slip before the step, v the slip after it. Motors keep the shape's own motion, so what
     the ground changes is a rigid motion of the whole body: three unknowns, one linear equation.
-    Such a drag takes energy at any time step (own derivation). A joint whose motor is too weak
-    gives way more than this foresees, one step late.
+    Such a drag takes energy at any time step (own derivation). It foresees nothing else that
+    pushes the robot in the plane, and a joint whose motor is too weak gives way one step late.
 
     Points in the plane are complex numbers x + iy; in link axes, along + i across.
 

@@ -74,19 +74,20 @@ def test_level_ground_shows_nothing(robot: Robot) -> None:
 def test_what_stands_there_is_seen_and_does_not_widen_the_view(
     still: RunRecord, robot: Robot, tmp_path: Path
 ) -> None:
-    sizes, colours = {}, {}
+    seen = {}
     for kind in ('flat', 'pegboard', 'granular'):
         view = view_ground(TerrainConfig(kind), robot, 0)
         draw_turn(still, robot, 10.0, tmp_path / f'{kind}.png', view)
         animate_turn(still, robot, tmp_path / f'{kind}.gif', ground=view)
         with GifImageFile(tmp_path / f'{kind}.gif') as picture:
             pixels = np.asarray(picture.convert('RGB')).astype(int)
-        sizes[kind] = int((np.abs(pixels - (224, 112, 44)).max(axis=2) < 12).sum())
-        colours[kind] = {tuple(c) for c in np.unique(pixels.reshape(-1, 3), axis=0).tolist()}
-    assert len(set(sizes.values())) == 1, 'the head is as large in each'
-    for kind, colour in (('pegboard', (181, 175, 165)), ('granular', (217, 201, 168))):
-        near = {c for c in colours[kind] if math.dist(c, colour) < 12.0}
-        assert near and not near & colours['flat']
+        seen[kind] = [
+            int((np.abs(pixels - colour).max(axis=2) < 12).sum())
+            for colour in ((224, 112, 44), (181, 175, 165), (217, 201, 168))  # head, peg, grain
+        ]
+    assert seen['flat'][0] == seen['pegboard'][0] == seen['granular'][0] > 100
+    assert seen['pegboard'][1] > 500 + seen['flat'][1]
+    assert seen['granular'][2] > 500 + seen['flat'][2]
 
 
 @pytest.mark.slow
@@ -94,7 +95,7 @@ def test_demo_turns_among_pegs_through_the_live_nodes(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     pytest.importorskip('rclpy')
-    command = '--terrain pegboard --spacing 0.4 --compliance on --turn-deg 8 --period 3 --seed 2'
+    command = '--terrain pegboard --spacing 0.4 --compliance on --turn-deg 8 --period 5 --seed 2'
     code = main(['demo', *command.split(), '--heading-feedback', 'none', '--out', str(tmp_path)])
     said = capfd.readouterr()
     assert code == 0

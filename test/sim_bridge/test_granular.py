@@ -6,15 +6,15 @@ import math
 from dataclasses import asdict
 
 import numpy as np
+import pybullet
 import pytest
-from scene import push
 
 from omega_turn_lab.physics_trial import play_cycle
 from omega_turn_ros.gaits.library import load_gait
 from omega_turn_ros.mechanics.chain import PlanarChain
 from omega_turn_ros.mechanics.force_laws import GranularResistance
 from omega_turn_ros.mechanics.quasi_static import QuasiStatic
-from omega_turn_ros.robot import Robot, load_robot
+from omega_turn_ros.robot import STANDARD_GRAVITY, Robot, load_robot
 from omega_turn_sim_bridge.granular import GranularGround
 from omega_turn_sim_bridge.robot import REFLECTED_INERTIA
 from omega_turn_sim_bridge.simulation import Simulation, SimulationConfig
@@ -109,25 +109,25 @@ def test_grains_take_energy_at_any_time_step_and_push_nobody_back(
         assert power <= 1e-12
 
 
-def push_sideways(robot: Robot, force: float, seconds: float) -> float:
-    """Sideways speed of the straight robot on grains, pushed evenly by so much [m/s]."""
-    with Simulation(robot, SimulationConfig(terrain=GRAINS, friction=FRICTION)) as simulation:
-        simulation.step(40)
-        shares = robot.body_masses / robot.body_masses.sum()
-        for _ in range(round(seconds / simulation.config.time_step)):
-            for link, share in enumerate(shares):
-                push(simulation, link - 1, (0.0, force * share, 0.0))
+@pytest.mark.parametrize(('sideways', 'ratio'), [(1.0, LAW.ratio), (0.0, 1.0)])
+def test_coasting_robot_is_slowed_by_the_resistance_until_it_rests(
+    robot: Robot, sideways: float, ratio: float
+) -> None:
+    start = np.array([1.0 - sideways, sideways, 0.0])
+    config = SimulationConfig(terrain=GRAINS, friction=FRICTION, time_step=1e-3)
+    with Simulation(robot, config) as simulation:
+        simulation.step(200)
+        pybullet.resetBaseVelocity(
+            simulation.body, start.tolist(), (0, 0, 0), physicsClientId=simulation.client
+        )
+        speeds = []
+        for _ in range(600):
             simulation.step()
-        return float(simulation.observe().twist[1])
-
-
-def test_a_push_moves_the_robot_where_it_exceeds_the_resistance(robot: Robot) -> None:
-    resistance = LAW.ratio * FRICTION * robot.weight
-    held = push_sideways(robot, 0.9 * resistance, 0.5)
-    assert 0.0 <= held < 0.005
-    mass = robot.body_masses.sum()
-    gained = push_sideways(robot, 1.2 * resistance, 0.5)
-    assert gained == pytest.approx(0.2 * resistance / mass * 0.5, rel=0.05)
+            speeds.append(float(simulation.observe().twist @ start))
+    slowing = FRICTION * ratio * STANDARD_GRAVITY
+    assert speeds[30] - speeds[0] == pytest.approx(-30 * 1e-3 * slowing, rel=0.03)
+    assert np.diff(speeds).max() < 1e-3 and min(speeds) > -1e-3  # no chatter, never pushed back
+    assert abs(speeds[-1]) < 1e-3
 
 
 def turn_deg(
@@ -153,7 +153,7 @@ def theory_deg(robot: Robot, name: str) -> float:
 @pytest.mark.slow
 @pytest.mark.parametrize('name', ['omega', 'offset', 'geometric'])
 def test_gaits_turn_as_far_as_the_force_balance_says(robot: Robot, name: str) -> None:
-    assert turn_deg(robot, name) == pytest.approx(theory_deg(robot, name), rel=0.03, abs=0.3)
+    assert turn_deg(robot, name) == pytest.approx(theory_deg(robot, name), rel=0.03, abs=0.6)
 
 
 @pytest.mark.slow

@@ -35,7 +35,7 @@ STEPS = 1000
 
 def quasi_static_deg(robot: Robot, gait: WaveGait, ratio: float) -> float:
     path = gait.angles(np.linspace(0.0, 2.0 * np.pi, 721), robot.n_yaw)
-    motion = QuasiStatic(PlanarChain.of_robot(robot, 8), GranularResistance.of_ratio(ratio))
+    motion = QuasiStatic(PlanarChain.of_robot(robot), GranularResistance.of_ratio(ratio))
     return math.degrees(motion.turn(path))
 
 
@@ -43,7 +43,7 @@ def largest_torque(robot: Robot, gait: WaveGait, ratio: float, friction: float) 
     """Largest torque any motor needs in the quasi-static model [N m]."""
     path = gait.angles(np.linspace(0.0, 2.0 * np.pi, 721), robot.n_yaw)
     step = np.diff(path, axis=0)
-    motion = QuasiStatic(PlanarChain.of_robot(robot, 8), GranularResistance.of_ratio(ratio))
+    motion = QuasiStatic(PlanarChain.of_robot(robot), GranularResistance.of_ratio(ratio))
     return float(np.abs(motion.joint_torques(path[:-1] + 0.5 * step, step, friction)).max())
 
 

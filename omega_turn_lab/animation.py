@@ -95,7 +95,7 @@ class _Scene:
 
     PAPER, GRID, INK, FAINT = '#ffffff', '#e4e4e4', '#222222', '#8c8c8c'
     SPINE, MODULE, HEAD, TRAIL = '#3d5266', '#6d8ba6', '#e0702c', '#1f62b0'
-    OBSTACLE, GRAIN = '#b5afa5', '#d9c9a8'
+    OBSTACLE, GRAIN = '#8f887c', '#d9c9a8'
 
     def __init__(self, record: RunRecord, robot: Robot, speed: float, ground: GroundView) -> None:
         from PIL import ImageFont

@@ -13,7 +13,7 @@ from omega_turn_sim_bridge.terrain_config import TerrainConfig
 Array = NDArray[np.float64]
 
 ROUND = 24  # corners of a peg
-GRAINS = 60.0  # dots per metre each way: a hint, the paper's spheres are five times as dense
+GRAINS = 40.0  # dots per metre each way: a hint, spheres of 6 mm lie four times as dense
 TILE = np.random.default_rng(0).uniform(0.0, 1.0, (64, 64, 2))  # where in its cell each dot lies
 
 

@@ -17,6 +17,7 @@ from omega_turn_lab.body_shapes import (
     sampled_at,
     turned_deg,
 )
+from omega_turn_lab.ground_view import LEVEL, GroundView
 from omega_turn_lab.run_record import RunRecord
 from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.robot import Robot
@@ -39,6 +40,7 @@ def animate_turn(
     path: Path,
     frames_per_second: float = 12.0,
     speed: float = 1.0,
+    ground: GroundView = LEVEL,
 ) -> None:
     """Write the turn as an animated GIF seen from above, the camera fixed.
 
@@ -49,6 +51,7 @@ def animate_turn(
         frames_per_second: of the picture, rounded to what GIF can say (1/100 s per frame).
         speed: seconds of the run per second watched; raised as far as a long run needs to stay
             within `MAX_FRAMES`.
+        ground: what it turned on.
 
     Raises:
         BadInputError: a rate that is not positive, or the record is not of this robot.
@@ -58,7 +61,7 @@ def animate_turn(
             raise BadInputError(field, value, 'a finite number > 0')
     frame_ms = max(20, round(100.0 / frames_per_second) * 10)
     times, speed = _frame_times(record.time, 1e-3 * frame_ms, speed)
-    scene = _Scene(sampled_at(record, times), robot, speed)
+    scene = _Scene(sampled_at(record, times), robot, speed, ground)
     frames = [scene.frame(i) for i in range(len(times))]
     path.parent.mkdir(parents=True, exist_ok=True)
     frames[0].save(
@@ -87,12 +90,14 @@ class _Scene:
         record: the run, one sample per frame.
         robot: the robot that made it.
         speed: seconds of the run per second watched, told in the picture.
+        ground: what it turned on.
     """
 
     PAPER, GRID, INK, FAINT = '#ffffff', '#e4e4e4', '#222222', '#8c8c8c'
     SPINE, MODULE, HEAD, TRAIL = '#3d5266', '#6d8ba6', '#e0702c', '#1f62b0'
+    OBSTACLE, GRAIN = '#8f887c', '#d9c9a8'
 
-    def __init__(self, record: RunRecord, robot: Robot, speed: float) -> None:
+    def __init__(self, record: RunRecord, robot: Robot, speed: float, ground: GroundView) -> None:
         from PIL import ImageFont
 
         self._record, self._robot, self._speed = record, robot, speed
@@ -107,7 +112,7 @@ class _Scene:
         self._font = ImageFont.load_default(size=0.042 * self._side)
         self._small = ImageFont.load_default(size=0.03 * self._side)
         self._palette = self._make_palette()
-        self._ground = self._draw_ground()
+        self._ground = self._draw_ground(ground)
 
     def frame(self, index: int) -> Image:
         """Draw one instant, as a palette image of FRAME_SIZE squared."""
@@ -136,8 +141,8 @@ class _Scene:
         y = middle - scale * (points[..., 1] - self._centre[1])
         return list(zip(x.tolist(), y.tolist()))
 
-    def _draw_ground(self) -> Image:
-        """Grid, scale bar and first heading: all that stays the same."""
+    def _draw_ground(self, ground: GroundView) -> Image:
+        """Grid, obstacles, scale bar and first heading: all that stays the same."""
         from PIL import Image, ImageDraw
 
         picture = Image.new('RGB', (self._side, self._side), self.PAPER)
@@ -152,6 +157,10 @@ class _Scene:
                 line[:, axis] = k * step
                 line[:, 1 - axis] += (-reach, reach)
                 draw.line(self._pixels(line), fill=self.GRID, width=SUPERSAMPLING)
+        for x, y in self._pixels(ground.grains(self._centre - reach, self._centre + reach)):
+            draw.ellipse((x - 2, y - 2, x + 2, y + 2), fill=self.GRAIN)
+        for outline in ground.obstacles:
+            draw.polygon(self._pixels(outline), fill=self.OBSTACLE)
         self._draw_scale_bar(draw, step)
         self._draw_arrow(draw, self._record.pose[0], self.FAINT)
         return picture
@@ -195,6 +204,7 @@ class _Scene:
         pairs += [(c, self.PAPER) for c in (self.SPINE, self.MODULE, self.HEAD)]
         pairs += [(self.SPINE, self.MODULE), (self.SPINE, self.HEAD)]
         pairs += [(c, self.INK) for c in (self.MODULE, self.HEAD, self.FAINT)]
+        pairs += [(c, self.PAPER) for c in (self.OBSTACLE, self.GRAIN)]
         values = [*ImageColor.getrgb(self.GRID)]
         for pair in pairs:
             values += mixed(*pair)

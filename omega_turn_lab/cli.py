@@ -49,6 +49,10 @@ def _add_demo(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--heading-feedback', choices=('odom', 'none'), default='odom')
     parser.add_argument('--compliance', choices=('on', 'off'), default='on')
     parser.add_argument('--friction', type=float, default=0.5, help='of the ground')
+    parser.add_argument('--terrain', default='flat', help='name in config/terrains, or a path')
+    parser.add_argument(
+        '--spacing', type=float, default=None, help="between pegs [BL]; default: the terrain's"
+    )
     parser.add_argument('--seed', type=int, default=0)
     parser.add_argument('--gui', action='store_true', help="show PyBullet's window")
     parser.set_defaults(run=_run_demo)
@@ -148,6 +152,8 @@ def _run_demo(options: argparse.Namespace) -> int:
             heading_feedback=options.heading_feedback,
             compliance=options.compliance == 'on',
             friction=options.friction,
+            terrain=options.terrain,
+            spacing=options.spacing,
             seed=options.seed,
             gui=options.gui,
         )

@@ -7,7 +7,7 @@ import math
 import os
 import sys
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from diagnostic_msgs.msg import DiagnosticArray
@@ -21,11 +21,13 @@ from tqdm import tqdm
 import omega_turn_lab.ros_environment  # noqa: F401  (first: it may restart the interpreter)
 from omega_turn_lab.animation import animate_turn
 from omega_turn_lab.folder import make_folder
+from omega_turn_lab.ground_view import view_ground
 from omega_turn_lab.live import NodeError, Observer, Stack, wait_until
 from omega_turn_lab.pictures import draw_turn
 from omega_turn_lab.recording import BagRecorder
 from omega_turn_lab.run_record import RunRecord
 from omega_turn_ros import __version__
+from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.gaits.library import load_gait
 from omega_turn_ros.gaits.turn_plan import plan_turn
 from omega_turn_ros.nodes.admittance_node import AdmittanceNode
@@ -33,6 +35,7 @@ from omega_turn_ros.nodes.gait_node import GaitNode
 from omega_turn_ros.nodes.qos import COMMAND, LATCHED, STATE
 from omega_turn_ros.robot import load_robot
 from omega_turn_sim_bridge.bridge_node import PyBulletBridge
+from omega_turn_sim_bridge.terrain_config import TerrainConfig, load_terrain
 
 START_TIMEOUT = 30.0  # [s] for the nodes to find each other
 STALL_TIMEOUT = 30.0  # [s] wall time without simulated time passing
@@ -63,7 +66,9 @@ class DemoOptions:
         heading_feedback: 'odom' or 'none'.
         compliance: run the admittance node too.
         friction: of the ground.
-        seed: of the simulation.
+        terrain: name in config/terrains, or a path.
+        spacing: between pegs [BL]; None takes the terrain's.
+        seed: of the simulation and of random terrains.
         gui: show PyBullet's window.
     """
 
@@ -75,8 +80,23 @@ class DemoOptions:
     heading_feedback: str = 'odom'
     compliance: bool = True
     friction: float = 0.5
+    terrain: str = 'flat'
+    spacing: float | None = None
     seed: int = 0
     gui: bool = False
+
+    def ground(self) -> TerrainConfig:
+        """Return the ground to build.
+
+        Raises:
+            BadInputError: no such terrain, or a spacing where there are no pegs.
+        """
+        terrain = load_terrain(self.terrain)
+        if self.spacing is None:
+            return terrain
+        if terrain.kind != 'pegboard':
+            raise BadInputError('--spacing', self.spacing, 'a terrain with pegs: pegboard')
+        return replace(terrain, spacing_bl=self.spacing)
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,15 +118,16 @@ def run_demo(options: DemoOptions) -> int:
     gait, robot = load_gait(options.gait), load_robot(options.robot)
     commanded = math.radians(options.turn_deg)
     predicted = plan_turn(commanded, gait.calibration).angle
+    ground = view_ground(options.ground(), robot, options.seed)
     make_folder(options.out)
     with Stack(demo_domain()) as stack:
         outcome = _play(stack, options, commanded)
     record = outcome.record
     achieved = math.degrees(record.pose[-1, 2] - record.pose[0, 2])
     print('drawing ...', file=sys.stderr)
-    draw_turn(record, robot, options.turn_deg, options.out / 'turn.png')
+    draw_turn(record, robot, options.turn_deg, options.out / 'turn.png', ground)
     speed = max(1.0, float(record.time[-1]) / 10.0)
-    animate_turn(record, robot, options.out / 'turn.gif', speed=speed)
+    animate_turn(record, robot, options.out / 'turn.gif', speed=speed, ground=ground)
     result = {
         'turn_deg_commanded': options.turn_deg,
         'turn_deg_predicted': math.degrees(predicted),
@@ -119,6 +140,8 @@ def run_demo(options: DemoOptions) -> int:
         'robot': options.robot,
         'heading_feedback': options.heading_feedback,
         'compliance': options.compliance,
+        'terrain': options.terrain,
+        'spacing_bl': options.spacing,
         'seed': options.seed,
         'version': __version__,
     }
@@ -142,6 +165,8 @@ def _play(stack: Stack, options: DemoOptions, commanded: float) -> Outcome:
         lock_step=True,
         start_paused=True,
         friction=options.friction,
+        terrain=options.terrain,
+        peg_spacing=options.spacing or 0.0,
         seed=options.seed,
         gui=options.gui,
     )

@@ -16,6 +16,7 @@ from omega_turn_lab.body_shapes import (
     sampled_at,
     turned_deg,
 )
+from omega_turn_lab.ground_view import LEVEL, GroundView
 from omega_turn_lab.run_record import RunRecord
 from omega_turn_ros.robot import Robot
 
@@ -40,10 +41,17 @@ STYLE: dict[Any, Any] = {
     'ytick.direction': 'out',
 }
 SNAPSHOTS = 5  # more of a turn in place hide each other
+OBSTACLE_COLOUR, GRAIN_COLOUR = '0.35', '#c9b48a'
 PALE = 0.3  # share of its colour in a body between start and end
 
 
-def draw_turn(record: RunRecord, robot: Robot, command_deg: float, path: Path) -> None:
+def draw_turn(
+    record: RunRecord,
+    robot: Robot,
+    command_deg: float,
+    path: Path,
+    ground: GroundView = LEVEL,
+) -> None:
     """Draw the figure of one turn: the body from above, its heading and its joints over time.
 
     Args:
@@ -51,6 +59,7 @@ def draw_turn(record: RunRecord, robot: Robot, command_deg: float, path: Path) -
         robot: the robot that made it.
         command_deg: the angle it was told to turn [deg], + = counter-clockwise.
         path: the PNG to write; missing folders are made.
+        ground: what it turned on.
 
     Raises:
         BadInputError: the record is not of this robot.
@@ -70,11 +79,12 @@ def draw_turn(record: RunRecord, robot: Robot, command_deg: float, path: Path) -
         over_time = figure.add_subplot(grid[0, 1])
         joints = figure.add_subplot(grid[1, 1], sharex=over_time)
         _draw_bodies(from_above, record, robot, outlines, chosen)
+        _draw_ground(from_above, ground)
         _draw_heading(over_time, record.time, heading, command_deg, chosen)
         _draw_kymograph(figure, joints, record, robot)
         figure.align_ylabels([over_time, joints])
         figure.suptitle(
-            f'Turn in place of {robot.name}: commanded {_degrees(command_deg)}, '
+            f'Turn in place of {robot.name}{ground.title}: commanded {_degrees(command_deg)}, '
             f'achieved {_degrees(heading[-1])}',
             fontsize=10,
         )
@@ -133,6 +143,21 @@ def _draw_bodies(
     axes.set_xlabel('x [m]')
     axes.set_ylabel('y [m]')
     axes.set_title('from above; colour is time, see the dots at right', loc='left', color='0.4')
+
+
+def _draw_ground(axes: Axes, ground: GroundView) -> None:
+    """Draw what stands there and grains; neither widens the view."""
+    from matplotlib.collections import PolyCollection
+    from matplotlib.lines import Line2D
+
+    view = axes.viewLim
+    reach = max(view.width, view.height)  # equal axes may widen the view up to a square
+    middle = np.array([0.5 * (view.x0 + view.x1), 0.5 * (view.y0 + view.y1)])
+    grains = ground.grains(middle - reach, middle + reach)
+    dots: dict[str, Any] = {'linestyle': 'none', 'marker': '.', 'ms': 1.1, 'mew': 0, 'zorder': 0.5}
+    axes.add_artist(Line2D(*grains.T, color=GRAIN_COLOUR, **dots))
+    obstacles = PolyCollection(ground.obstacles, facecolor=OBSTACLE_COLOUR, zorder=2.95)
+    axes.add_collection(obstacles, autolim=False)
 
 
 def _draw_body(

@@ -60,6 +60,15 @@ BRIDGE_PARAMETERS = (
         'rock_size', 0.0, "Of rocks, mean [BL]; 0: the terrain's.", 'BL', 0.0, 10.0, read_only=True
     ),
     Spec(
+        'resistance_ratio',
+        0.0,
+        "Of grains, sideways over lengthways; 0: the terrain's.",
+        '',
+        0.0,
+        10.0,
+        read_only=True,
+    ),
+    Spec(
         'real_time_factor', 1.0, 'Simulated over real time; 0 is as fast as it can.', '', 0, 1000
     ),
     Spec(
@@ -70,7 +79,15 @@ BRIDGE_PARAMETERS = (
     ),
     Spec('solver_iterations', 20, 'Of the constraint solver.', '', 1, 1000, read_only=True),
     Spec('gui', False, "Show PyBullet's window.", read_only=True),
-    Spec('friction', 0.5, 'Friction coefficient of the ground.', '', 0.0, 5.0, read_only=True),
+    Spec(
+        'friction',
+        0.5,
+        'Friction coefficient of the ground; of grains, resistance lengthways over weight.',
+        '',
+        0.0,
+        5.0,
+        read_only=True,
+    ),
     Spec(
         'effort_limit', 0.0, "Largest motor torque; 0: robot's.", 'N m', 0.0, 1e3, read_only=True
     ),
@@ -121,6 +138,7 @@ def make_terrain(values: Mapping[str, Any]) -> TerrainConfig:
         'spacing_bl': values['peg_spacing'] or None,
         'peg_friction': values['peg_friction'] if values['peg_friction'] >= 0.0 else None,
         'rock_size_bl': values['rock_size'] or None,
+        'resistance_ratio': values['resistance_ratio'] or None,
     }
     given = {name: value for name, value in own.items() if value is not None}
     return replace(load_terrain(values['terrain']), **given)

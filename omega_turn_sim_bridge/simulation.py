@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from omega_turn_ros.errors import BadInputError, SimulationError
 from omega_turn_ros.robot import STANDARD_GRAVITY, Robot
 from omega_turn_sim_bridge.engine import pybullet
+from omega_turn_sim_bridge.granular import GranularGround
 from omega_turn_sim_bridge.robot import ride_height, urdf_from_robot
 from omega_turn_sim_bridge.terrain import build_ground
 from omega_turn_sim_bridge.terrain_config import TerrainConfig
@@ -38,7 +39,8 @@ class SimulationConfig:
     Attributes:
         time_step: one solver step [s].
         solver_iterations: of the constraint solver, per step.
-        friction: kinetic friction coefficient between feet and ground.
+        friction: kinetic friction coefficient between feet and ground; of grains, resistance to
+            sliding lengthways over the weight.
         contact_stiffness: of each foot [N/m]. Compliant feet share the weight evenly; rigid
             contact is statically indeterminate and lets friction act at random places.
         contact_damping: of each foot [N s/m].
@@ -238,6 +240,8 @@ class Simulation:
             self._reference += dt * rate
             self._reference_rate = rate
             self._drive(rate)
+            if self._grains is not None:
+                self._grains.push(self._client, self._body)
             pybullet.stepSimulation(physicsClientId=self._client)
             self._steps += 1
             # Commands come in stairs, so torques ripple in step with them: a reading that looked
@@ -336,6 +340,10 @@ class Simulation:
         self._ground = build_ground(
             client, config.terrain, self.robot, config.friction, config.seed
         )
+        self._grains: GranularGround | None = None
+        if self._ground.grains is not None:
+            grains = self._ground.grains
+            self._grains = GranularGround(self.robot, grains, config.friction, config.time_step)
         flags = pybullet.URDF_USE_INERTIA_FROM_FILE
         if self._ground.solid:
             # What an obstacle bends beyond the gait must not pass through itself.
@@ -350,7 +358,7 @@ class Simulation:
             pybullet.changeDynamics(
                 self._body,
                 link,
-                lateralFriction=config.friction,
+                lateralFriction=0.0 if self._grains else config.friction,
                 contactStiffness=stiffness,
                 contactDamping=config.contact_damping,
                 linearDamping=0.0,

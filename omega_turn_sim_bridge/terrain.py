@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from omega_turn_ros.mechanics.force_laws import GranularResistance
 from omega_turn_ros.robot import Robot
 from omega_turn_sim_bridge.engine import pybullet
 from omega_turn_sim_bridge.terrain_config import TerrainConfig
@@ -18,12 +19,14 @@ class Ground:
         carriers: those of them that carry the robot's weight.
         solid: bodies the robot needs to meet what lies there, see `urdf_from_robot`.
         top: height of the highest thing the straight robot can come to lie on [m].
+        grains: what resists the links instead of friction under the feet.
     """
 
     bodies: tuple[int, ...]
     carriers: tuple[int, ...]
     solid: str = ''
     top: float = 0.0
+    grains: GranularResistance | None = None
 
 
 def build_ground(
@@ -60,6 +63,9 @@ def build_ground(
                 level, (0, 0, soil), (0, 0, 0, 1), physicsClientId=client
             )
         return Ground((level, *rocks), (level, *rocks), solid='square', top=top)
+    if config.kind == 'granular':
+        law = GranularResistance.of_ratio(config.resistance_ratio)
+        return Ground((level,), (level,), grains=law)
     return Ground((level,), (level,))
 
 

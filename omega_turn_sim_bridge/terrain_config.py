@@ -7,9 +7,10 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from omega_turn_ros.errors import BadInputError
+from omega_turn_ros.mechanics.force_laws import GranularResistance
 from omega_turn_ros.resources import read_config
 
-KINDS = ('flat', 'pegboard', 'rocks')
+KINDS = ('flat', 'granular', 'pegboard', 'rocks')
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,8 +18,9 @@ class TerrainConfig:
     """A ground and what lies on it. Lengths in body lengths [BL] follow the robot.
 
     Attributes:
-        kind: 'flat'; 'pegboard', upright pegs in a hexagonal lattice; or 'rocks', a pile of
-            convex rocks that has come to rest.
+        kind: 'flat'; 'granular', a bed of grains that resists by the direction of slip;
+            'pegboard', upright pegs in a hexagonal lattice; or 'rocks', a pile of convex rocks
+            that has come to rest.
         extent_bl: obstacles reach this far around the start [BL].
         spacing_bl: between the axes of neighbouring pegs [BL].
         peg_radius: [m].
@@ -29,6 +31,7 @@ class TerrainConfig:
         rock_relief_bl: soil fills the pile up to this far below its highest rock under the robot
             [BL]; 0 leaves the gaps open down to the ground.
         rock_friction: coefficient between body and rock.
+        resistance_ratio: of grains, to sliding sideways over to sliding lengthways.
     """
 
     kind: str = 'flat'
@@ -41,6 +44,7 @@ class TerrainConfig:
     rock_size_bl: float = 0.3
     rock_relief_bl: float = 0.05
     rock_friction: float = 0.5
+    resistance_ratio: float = 1.5
 
     def __post_init__(self) -> None:
         """Refuse what makes no ground."""
@@ -54,6 +58,10 @@ class TerrainConfig:
                 raise BadInputError(f'terrain {field}', value, 'a finite number >= 0')
             if value == 0.0 and field in lengths:
                 raise BadInputError(f'terrain {field}', value, 'a length > 0')
+        ratio, largest = self.resistance_ratio, GranularResistance().ratio
+        number = isinstance(ratio, (int, float)) and not isinstance(ratio, bool)
+        if not number or not 1.0 <= ratio <= largest:
+            raise BadInputError('terrain resistance_ratio', ratio, f'a ratio in 1..{largest:.3g}')
 
 
 def load_terrain(name: str) -> TerrainConfig:

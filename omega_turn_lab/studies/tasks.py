@@ -21,6 +21,7 @@ from omega_turn_ros.gaits.wave_gait import WaveGait
 from omega_turn_ros.mechanics.chain import PlanarChain
 from omega_turn_ros.mechanics.force_laws import CoulombFriction, ForceLaw
 from omega_turn_ros.robot import Robot
+from omega_turn_sim_bridge.terrain_config import TerrainConfig
 
 Result = dict[str, Any]
 
@@ -120,22 +121,29 @@ class PhysicsTask:
         robot: the robot.
         gait: what it plays.
         period: of the cycle [s].
+        terrain: the ground.
+        friction: of the ground, see `SimulationConfig`.
     """
 
     code: ClassVar[tuple[str, ...]] = PHYSICS_CODE
     robot: Robot
     gait: WaveGait
     period: float = 10.0
+    terrain: TerrainConfig = field(default_factory=TerrainConfig)
+    friction: float = 0.5
 
     def __str__(self) -> str:
         """Name the case."""
-        return f'PyBullet trial of {self.robot.name}, {self.gait}'
+        ground = f'{self.terrain}, friction {self.friction:g}'
+        return f'PyBullet trial of {self.robot.name} on {ground}, {self.gait}'
 
     def run(self) -> Result:
         """Return the angle per cycle [deg], swept areas [BL^2] and the motion itself."""
         from omega_turn_lab.physics_trial import play_cycle
+        from omega_turn_sim_bridge.simulation import SimulationConfig
 
-        trial = play_cycle(self.robot, self.gait, self.period, samples=AREA_SAMPLES)
+        config = SimulationConfig(terrain=self.terrain, friction=self.friction)
+        trial = play_cycle(self.robot, self.gait, self.period, config, AREA_SAMPLES)
         chain = PlanarChain.of_robot(self.robot)
         return {
             'angle_deg': math.degrees(trial.angle),

@@ -199,6 +199,17 @@ def torques_of_slip(chain: PlanarChain, state: ShapeState, slip: Array, mu: floa
     epsilon = SMOOTHING[-1] * _mean_speed(state.velocities, chain.normal_forces)[:, None]
     scale = np.sqrt((slip**2).sum(axis=-1) + np.maximum(epsilon, 1e-150) ** 2)
     force = -mu * chain.normal_forces[:, None] * slip / scale[..., None]
+    return torques_of_forces(chain, state, force)
+
+
+def torques_of_forces(chain: PlanarChain, state: ShapeState, force: Array) -> Array:
+    """Actuator torques that hold against forces of the ground [N m], shape (B, N).
+
+    Args:
+        chain: the robot.
+        state: its shapes, batch shape (B,).
+        force: on the contact points, in the mean body frame [N], shape (B, P, 2).
+    """
     behind = chain.link_of_point[None, :] > np.arange(chain.n_joints)[:, None]  # (N, P)
     moment = state.points[..., 0] * force[..., 1] - state.points[..., 1] * force[..., 0]
     about_origin = moment @ behind.T

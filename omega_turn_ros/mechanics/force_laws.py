@@ -186,6 +186,21 @@ class GranularResistance:
             ]
         )
 
+    def drag(self, tangential: ArrayLike, normal: ArrayLike) -> tuple[Array, Array]:
+        """Resistance over slip, which stays finite where a component of the slip vanishes.
+
+        Args:
+            tangential: component of the unit slip along the link, shape (...).
+            normal: component across the link, shape (...).
+
+        Returns:
+            -F_par / tangential and -F_perp / normal per unit of load, both > 0, shape (...).
+        """
+        smooth, sharp, side, gamma = self.parameters
+        ut, un = np.abs(tangential), np.asarray(normal, float)
+        along = smooth + sharp * ut / (1.0 + np.abs(un))
+        return along, smooth + side * gamma / np.sqrt(1.0 + (gamma * un) ** 2)
+
     def force(self, tangential: ArrayLike, normal: ArrayLike) -> tuple[Array, Array]:
         """See `ForceLaw.force`; per load so that axial sliding meets 1."""
         vt, vn = np.asarray(tangential, float), np.asarray(normal, float)

@@ -10,8 +10,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from omega_turn_ros.errors import BadInputError, ConvergenceError
-from omega_turn_ros.mechanics.chain import PlanarChain
-from omega_turn_ros.mechanics.force_balance import joint_torques, slip_velocities, torques_of_slip
+from omega_turn_ros.mechanics.chain import PlanarChain, ShapeState
+from omega_turn_ros.mechanics.force_balance import (
+    joint_torques,
+    slip_velocities,
+    torques_of_forces,
+    torques_of_slip,
+)
 from omega_turn_ros.mechanics.force_laws import COULOMB, CoulombFriction, ForceLaw
 from omega_turn_ros.mechanics.kernel import velocities
 from omega_turn_ros.mechanics.trajectory import integrate_twists
@@ -75,33 +80,45 @@ class QuasiStatic:
         return result
 
     def joint_torques(self, angles: ArrayLike, rates: ArrayLike, friction: float) -> Array:
-        """Return what `force_balance.joint_torques` does, sooner; isotropic friction only.
+        """Actuator torques against the ground, as `force_balance.joint_torques` gives, sooner.
+
+        A point that sticks has a force, but no slip to tell it by. Isotropic friction gives it
+        the force that balances; other laws that of whatever slip is left.
 
         Args:
             angles: yaw joint angles [rad], shape (..., N).
             rates: their time derivatives [rad/s], shape (..., N).
-            friction: kinetic friction coefficient mu.
+            friction: kinetic friction coefficient mu; of other laws the force that a load of 1
+                makes 1 of theirs.
 
         Returns:
             Torques on the link behind each joint, + = counter-clockwise [N m], shape (..., N).
-
-        Raises:
-            BadInputError: the law is not isotropic friction.
         """
-        if self.law.kind != COULOMB:
-            raise BadInputError('law', self.law, 'isotropic Coulomb friction')
         xi = self.body_velocity(angles, rates).reshape(-1, 3)
         flat = (-1, self.chain.n_joints)
         q, dq = np.reshape(angles, flat), np.reshape(rates, flat)
         state = self.chain.state(q, dq)
         slip = slip_velocities(state.points, state.velocities, xi)
+        if self.law.kind != COULOMB:
+            force = friction * self._forces(state, slip)
+            return torques_of_forces(self.chain, state, force).reshape(np.shape(angles))
         torques = torques_of_slip(self.chain, state, slip, friction)
-        # A point that sticks has a force, but no slip to tell it by: the smoothed balance has.
+        # The smoothed balance knows the force of a point that sticks.
         speeds = np.hypot(slip[..., 0], slip[..., 1])
         sticks = speeds.min(axis=-1) < STICKING * np.abs(state.velocities).mean(axis=(-2, -1))
         if sticks.any():
             torques[sticks] = joint_torques(self.chain, q[sticks], dq[sticks], friction)
         return torques.reshape(np.shape(angles))
+
+    def _forces(self, state: ShapeState, slip: Array) -> Array:
+        """Forces of the law on the points of B shapes, in the mean body frame, (B, P, 2)."""
+        angles = state.link_angles[:, self.chain.link_of_point]
+        c, s = np.cos(angles), np.sin(angles)
+        x, y = slip[..., 0], slip[..., 1]
+        along, across = self.law.force(c * x + s * y, c * y - s * x)
+        force = np.stack([c * along - s * across, s * along + c * across], axis=-1)
+        result: Array = self.chain.normal_forces[:, None] * force
+        return result
 
     def displacements(self, path: ArrayLike) -> Array:
         """Body displacement in each step along a path of shapes, by the midpoint rule.

@@ -28,6 +28,9 @@ def refused(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> str:
     [
         (['--gait', 'nosuch'], "error: gait: got 'nosuch', expected a path"),
         (['--robot', 'nosuch'], "error: robot: got 'nosuch', expected a path"),
+        (['--terrain', 'nosuch'], "error: terrain: got 'nosuch', expected a path"),
+        (['--spacing', '0.3'], 'error: --spacing: got 0.3, expected a terrain with pegs'),
+        (['--terrain', 'pegboard', '--spacing', '0'], 'error: terrain spacing_bl: got 0.0'),
         (['--turn-deg', '1e6'], '--turn-deg: 1e6: expected less than 1e6 deg'),
         (['--turn-deg', 'left'], '--turn-deg: left: expected a number [deg]'),
         (['--out', '/dev/null/out'], "error: out: got '/dev/null/out', expected a folder"),

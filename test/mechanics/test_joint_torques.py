@@ -6,10 +6,14 @@ import numpy as np
 import pytest
 from plain_chain import PlainChain, RandomMotions
 
-from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.mechanics.chain import PlanarChain
 from omega_turn_ros.mechanics.force_balance import body_velocity, joint_torques
-from omega_turn_ros.mechanics.force_laws import CoulombFriction
+from omega_turn_ros.mechanics.force_laws import (
+    CoulombFriction,
+    ForceLaw,
+    GranularResistance,
+    LinearDrag,
+)
 from omega_turn_ros.mechanics.quasi_static import QuasiStatic
 
 MU = 0.5
@@ -136,8 +140,28 @@ def test_compiled_torques_are_those_of_the_numpy_balance(
     np.testing.assert_allclose(fast, slow, rtol=0.0, atol=1e-3 * np.abs(slow).max())
 
 
-def test_compiled_torques_of_another_law_are_refused(
-    chain: PlanarChain, motions: RandomMotions
+@pytest.mark.parametrize(
+    'law', [LinearDrag(), CoulombFriction(2.0), GranularResistance.of_ratio(3.0)], ids=repr
+)
+def test_motors_do_the_work_that_any_ground_takes(
+    chain: PlanarChain, motions: RandomMotions, law: ForceLaw
 ) -> None:
-    with pytest.raises(BadInputError, match='law'):
-        QuasiStatic(chain, CoulombFriction(2.0)).joint_torques(motions.angles, motions.rates, 0.5)
+    motion = QuasiStatic(chain, law)
+    torques = motion.joint_torques(motions.angles, motions.rates, MU)
+    state = chain.state(motions.angles, motions.rates)
+    xi = motion.body_velocity(motions.angles, motions.rates)
+    taken, slowest = np.zeros(len(xi)), np.full(len(xi), np.inf)
+    for k, link in enumerate(chain.link_of_point):
+        x, y = state.points[:, k].T
+        vx = state.velocities[:, k, 0] + xi[:, 0] - xi[:, 2] * y
+        vy = state.velocities[:, k, 1] + xi[:, 1] + xi[:, 2] * x
+        c, s = np.cos(state.link_angles[:, link]), np.sin(state.link_angles[:, link])
+        along, across = c * vx + s * vy, c * vy - s * vx
+        force = law.force(along, across)
+        slowest = np.minimum(slowest, np.hypot(along, across))
+        taken -= MU * chain.normal_forces[k] * (force[0] * along + force[1] * across)
+    done = (torques * motions.rates).sum(axis=-1)
+    slipping = slowest > 1e-3 * np.abs(state.velocities).mean()  # else forces are not the slip's
+    assert slipping.sum() > 20
+    assert (done > 0.0).all()
+    np.testing.assert_allclose(done[slipping], taken[slipping], rtol=1e-6)

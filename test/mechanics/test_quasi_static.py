@@ -142,6 +142,16 @@ def test_forces_of_the_law_cancel(chain: PlanarChain, law: ForceLaw) -> None:
     assert slipping > 20
 
 
+@pytest.mark.parametrize('ratio', [1.0, 1.5, 4.0, 8.0])
+def test_drag_times_slip_is_the_force_of_the_grains(ratio: float) -> None:
+    law = GranularResistance.of_ratio(ratio)
+    bearing = np.linspace(-np.pi, np.pi, 181)
+    slip = np.cos(bearing), np.sin(bearing)
+    for drag, component, force in zip(law.drag(*slip), slip, law.force(*slip)):
+        assert (drag > 0.0).all()
+        np.testing.assert_allclose(-drag * component, force, atol=1e-12)
+
+
 @pytest.mark.parametrize('law', LAWS, ids=repr)
 def test_velocity_does_not_depend_on_the_shapes_solved_before(
     chain: PlanarChain, motions: RandomMotions, law: ForceLaw

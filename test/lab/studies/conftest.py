@@ -64,7 +64,14 @@ def outcome() -> Outcome:
         for task in study.designs(plan) if study.played else ():
             gait = found.gait(task)
             played[PhysicsTask(task.robot, gait)] = played_by_theory(task, gait)
-    return Outcome(plan, designed, played)
+    design_of = {found.gait(task): task for task in designed}
+    trials = [trial for study in studies for trial in study.trials(found)]
+    tried = {
+        trial: played_by_theory(design_of[trial.gait], trial.gait)
+        for trial in trials
+        if isinstance(trial, PhysicsTask)
+    }
+    return Outcome(plan, designed, played, {**tried})
 
 
 @pytest.fixture(scope='session')

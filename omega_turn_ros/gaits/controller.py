@@ -27,7 +27,6 @@ from omega_turn_ros.gaits.controller_state import (
 from omega_turn_ros.gaits.library import LibraryGait
 from omega_turn_ros.gaits.limits import JointLimits, limit_command
 from omega_turn_ros.gaits.move import move_between
-from omega_turn_ros.gaits.postures import Postures
 from omega_turn_ros.gaits.turn_plan import plan_turn
 from omega_turn_ros.robot import Robot
 
@@ -52,8 +51,8 @@ class GaitController:
         gait: gait with its calibration.
         config: settings.
         limits: of every command.
-        unbend_heading: heading change [rad] from straightening a posture of yaw angles [rad],
-            shape (N,), along a straight line in joint space.
+        unbend_heading: heading change [rad] of going to rest, along a straight line in joint
+            space, from a posture of the joints the gait moves [rad], shape (N,).
 
     Raises:
         BadInputError: the gait does not fit the robot or its limits.
@@ -67,16 +66,18 @@ class GaitController:
         limits: JointLimits,
         unbend_heading: Callable[[Array], float],
     ) -> None:
-        if gait.calibration.n_joints != robot.n_yaw:
-            count = f'{robot.n_yaw} yaw joints of {robot.name}, not {gait.calibration.n_joints}'
+        self._joints = gait.gait.joints_of(robot)
+        n = self._joints.size
+        if gait.calibration.n_joints != n:
+            moved = f'{n} {gait.gait.moves}'
+            count = f'{moved} of {robot.name}, not {gait.calibration.n_joints}'
             own = 'omega_turn design --all --robot ... makes its own'
             raise BadInputError('gait', gait.name, f'one for the {count}: {own}')
         if gait.theta_max > limits.position + 1e-9:
             raise BadInputError('gait', gait.name, f'joint angles within {limits.position} rad')
         self.robot, self.gait, self.config, self.limits = robot, gait, config, limits
         self._unbend_heading = unbend_heading
-        self._yaw = robot.yaw_indices
-        self._postures = Postures(gait.gait, self._yaw, robot.n_joints)
+        self._played = gait.gait.on(robot)
         # Without feedback the prediction closes exactly; what is left is rounding.
         self._tolerance = config.heading_tolerance if config.heading_feedback else 1e-3
         self._cycle_rate = 2.0 * math.pi / config.period
@@ -170,6 +171,8 @@ class GaitController:
     def _take_offsets(
         self, state: ControllerState, wanted: tuple[float, float], dt: float
     ) -> ControllerState:
+        if not self.gait.gait.complies:
+            return state
         if wanted == state.offsets or any(math.isnan(w) for w in wanted):
             return state
         limit, reach = self.config.offset_limit, self.config.offset_rate * dt
@@ -212,7 +215,7 @@ class GaitController:
             state.scale, state.turned
         )
         offsets = (gate * state.offsets[0], gate * state.offsets[1])
-        target = self._postures.at(table.start_phase + turned, state.scale, offsets)
+        target = self._played.at(table.start_phase + turned, state.scale, offsets)
         changes = {'turned': turned, 'phase_rate': rate, 'gate': gate}
         return changes, target, predicted * state.ratio
 
@@ -271,7 +274,7 @@ class GaitController:
         self, state: ControllerState, scale: float, bend_now: float
     ) -> ControllerState:
         """Move along one line in shape space to the start shape at `scale`."""
-        target = self._postures.at(self.gait.calibration.start_phase, scale, (0.0, 0.0))
+        target = self._played.at(self.gait.calibration.start_phase, scale, (0.0, 0.0))
         bend = self.gait.calibration.bend_heading_of(scale) - bend_now
         command = self._known(state)
         if np.abs(target - command).max() < SAME_SHAPE:
@@ -290,9 +293,10 @@ class GaitController:
     def _move_to_rest(self, state: ControllerState) -> ControllerState:
         command = self._known(state)
         heading_change = 0.0
-        if np.abs(command[self._yaw]).max() > AT_REST:
-            heading_change = self._unbend_heading(command[self._yaw])
-        move = move_between(command, np.zeros_like(command), self._move_velocity(), heading_change)
+        rest = self._played.rest
+        if np.abs((command - rest)[self._joints]).max() > AT_REST:
+            heading_change = self._unbend_heading(command[self._joints])
+        move = move_between(command, rest, self._move_velocity(), heading_change)
         return replace(
             state, mode=Mode.MOVING, move=move, to_cycle=False, phase_rate=0.0, settling=0.0
         )
@@ -317,7 +321,7 @@ class GaitController:
         velocity = (command - previous) / dt if dt > 0.0 else np.zeros_like(command)
         cycling = state.mode is Mode.CYCLING
         phase = self.gait.calibration.start_phase + (state.turned if cycling else 0.0)
-        _, tau_f, _, tau_t = self.gait.gait.waves_at(phase)
+        tau_f, tau_t = self.gait.gait.wave_phases(phase)
         rate = state.phase_rate if cycling else 0.0
         return Output(command, velocity, tau_f, tau_t, rate)
 

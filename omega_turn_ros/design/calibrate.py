@@ -83,6 +83,9 @@ def calibrate_postures(
             bend[k] += 0.5 * side * heading_along(straight_path(played.rest, path[0]))[-1]
             fastest = float(np.abs(np.diff(path, axis=0)).max())
             peak = max(peak, fastest * steps / (2.0 * np.pi))
+    # What it drifts at scale 0 is no turn. It fades with the scale, so that turns begin at 0.
+    drift = heading[0, -1] * np.linspace(0.0, 1.0, PHASES + 1)
+    heading -= (1.0 - scales)[:, None] * drift
     return Calibration(start, scales, heading, bend, peak, n_joints)
 
 

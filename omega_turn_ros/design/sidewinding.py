@@ -1,4 +1,4 @@
-"""The frequency turn of a robot with yaw and pitch joints: which ratios of spatial frequency."""
+"""The frequency turn of a robot with yaw and pitch joints: which ratio of spatial frequencies."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq, minimize_scalar
+from scipy.optimize import minimize_scalar
 
 from omega_turn_ros.design.calibrate import calibrate_postures
 from omega_turn_ros.errors import BadInputError
@@ -22,9 +22,8 @@ from omega_turn_ros.robot import Robot
 
 Array = NDArray[np.float64]
 
-RATIOS = (0.9, 2.0)
-STRAIGHT_WITHIN = 1.2  # ratios up to this may pass for straight sidewinding
-GRID = 23
+RATIOS = (1.0, 2.0)
+GRID = 21
 STEPS = 120  # of a cycle while searching
 RATIO_TOLERANCE = 2e-3
 STEPS_PER_PHASE = 8
@@ -76,7 +75,7 @@ class SidewindingDesign:
 def design_sidewinding(
     recipe: SidewindingRecipe, robot: Robot
 ) -> tuple[SidewindingDesign, LibraryGait]:
-    """Find the ratio that keeps the heading and the one that turns most; calibrate in between.
+    """Find the ratio of spatial frequencies that turns most, and calibrate from 1 to there.
 
     Raises:
         BadInputError: the robot has other joints, or too little range.
@@ -86,20 +85,18 @@ def design_sidewinding(
         expected = f'yaw and pitch joints that reach {recipe.a_h_deg:g} deg'
         raise BadInputError('robot', robot.name, expected)
     chain = RestingChain(robot)
-    gait = Sidewinding(
-        recipe.k_h, math.radians(recipe.a_h_deg), math.radians(recipe.a_v_deg), 1.0, 1.0
-    )
+    gait = Sidewinding(recipe.k_h, math.radians(recipe.a_h_deg), math.radians(recipe.a_v_deg), 1.0)
     turns: dict[float, float] = {}
 
     def turn(ratio: float) -> float:
         if ratio not in turns:
-            turns[ratio] = _turn(chain, replace(gait, straight_ratio=ratio, turning_ratio=ratio))
+            turns[ratio] = _turn(chain, replace(gait, turning_ratio=ratio))
         return turns[ratio]
 
-    straight, turning = _ratios(turn)
+    turning = _turning_ratio(turn)
     if turn(turning) < 0.0:
         gait = replace(gait, a_h=-gait.a_h)
-    gait = replace(gait, straight_ratio=straight, turning_ratio=turning)
+    gait = replace(gait, turning_ratio=turning)
     start = _start_phase(chain, gait)
     played = gait.on(robot)
     calibration = calibrate_postures(
@@ -127,27 +124,19 @@ def _turn(chain: RestingChain, gait: Sidewinding) -> float:
     return float(0.5 * (left - right))
 
 
-def _ratios(turn: Callable[[float], float]) -> tuple[float, float]:
-    """Ratio near 1 that turns least, and the one above it that turns most either way."""
+def _turning_ratio(turn: Callable[[float], float]) -> float:
+    """Ratio above 1 that turns most, either way."""
     grid = np.linspace(*RATIOS, GRID)
     turns = np.array([turn(float(ratio)) for ratio in grid])
-    near = grid <= STRAIGHT_WITHIN
-    k = int(np.abs(turns[near]).argmin())
-    straight = float(grid[k])
-    for low, high in ((k - 1, k), (k, k + 1)):
-        if low >= 0 and turns[low] * turns[high] < 0.0:
-            straight = float(brentq(turn, grid[low], grid[high], xtol=RATIO_TOLERANCE))
-            break
-    best = int(np.abs(turns[k:]).argmax()) + k
+    best = int(np.abs(turns).argmax())
     sign = math.copysign(1.0, turns[best])
-    low, high = grid[max(best - 1, k)], grid[min(best + 1, GRID - 1)]
     found = minimize_scalar(
         lambda ratio: -sign * turn(float(ratio)),
-        bounds=(low, high),
+        bounds=(grid[max(best - 1, 0)], grid[min(best + 1, GRID - 1)]),
         method='bounded',
         options={'xatol': RATIO_TOLERANCE},
     )
-    return straight, float(found.x)
+    return float(found.x)
 
 
 def _start_phase(chain: RestingChain, gait: Sidewinding) -> float:

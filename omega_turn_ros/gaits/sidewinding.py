@@ -29,22 +29,20 @@ Array = NDArray[np.float64]
 class Sidewinding(Gait):
     """Sidewinding whose scale modulates the ratio of spatial frequencies.
 
-    The ratio k_v / k_h runs from `straight_ratio` at scale 0, where the robot moves sideways and
-    keeps its heading, to `turning_ratio` at scale +-1. A negative scale is the mirror image:
-    sidewinding to the other side, turning the other way.
+    The ratio k_v / k_h runs from 1 at scale 0, where the robot moves sideways and keeps its
+    heading, to `turning_ratio` at scale +-1. A negative scale is the mirror image: sidewinding to
+    the other side, turning the other way.
 
     Attributes:
         k_h: spatial frequency of the horizontal wave, waves on the body.
         a_h: its amplitude [rad].
         a_v: amplitude of the vertical wave [rad].
-        straight_ratio: k_v / k_h at scale 0, near 1.
         turning_ratio: k_v / k_h at scale +-1.
     """
 
     k_h: float
     a_h: float
     a_v: float
-    straight_ratio: float
     turning_ratio: float
 
     def __post_init__(self) -> None:
@@ -68,7 +66,7 @@ class Sidewinding(Gait):
 
     def ratio(self, scale: float) -> float:
         """Return k_v / k_h at a scale in -1..1."""
-        return self.straight_ratio + abs(scale) * (self.turning_ratio - self.straight_ratio)
+        return 1.0 + abs(scale) * (self.turning_ratio - 1.0)
 
     @classmethod
     def from_mapping(cls, parameters: dict[str, Any]) -> Sidewinding:
@@ -107,8 +105,8 @@ class SidewindingPostures:
         lag = 2.0 * math.pi * gait.k_h * place / robot.n_joints
         self.rest: Array = np.zeros(robot.n_joints)
         # Where the wave is straight, what the scale adds, and how high it is, joint by joint.
-        self._lag = np.where(yaw, lag, gait.straight_ratio * lag - 0.5 * math.pi)
-        self._drift = np.where(yaw, 0.0, (gait.turning_ratio - gait.straight_ratio) * lag)
+        self._lag = np.where(yaw, lag, lag - 0.5 * math.pi)
+        self._drift = np.where(yaw, 0.0, (gait.turning_ratio - 1.0) * lag)
         self._left = np.where(yaw, gait.a_h, gait.a_v)
         self._right = np.where(yaw, -gait.a_h, gait.a_v)
 

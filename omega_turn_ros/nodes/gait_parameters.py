@@ -3,23 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from omega_turn_ros.errors import BadInputError, ConvergenceError
+from omega_turn_ros.design.rest import heading_to_rest
+from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.gaits.controller import GaitController
 from omega_turn_ros.gaits.controller_state import ControllerConfig
-from omega_turn_ros.gaits.gait import Gait
 from omega_turn_ros.gaits.library import load_gait
 from omega_turn_ros.gaits.limits import JointLimits
-from omega_turn_ros.gaits.wave_gait import WaveGait
-from omega_turn_ros.mechanics.chain import PlanarChain
-from omega_turn_ros.mechanics.posture import unbend_heading
-from omega_turn_ros.mechanics.resting_chain import RestingChain
-from omega_turn_ros.mechanics.resting_motion import lie_down_heading
 from omega_turn_ros.nodes.parameters import ParameterSpec as Spec
 from omega_turn_ros.robot import Robot
 
@@ -109,19 +101,3 @@ def make_controller(values: Mapping[str, Any], robot: Robot) -> GaitController:
         expected = f'at least {slowest:.3g} rad, the gait at {values["rate"]:g} Hz'
         raise BadInputError('parameter step_limit', limits.step, expected)
     return GaitController(robot, gait, config, limits, heading_to_rest(robot, gait.gait))
-
-
-def heading_to_rest(robot: Robot, gait: Gait) -> Callable[[NDArray[np.float64]], float]:
-    """Return what tells the heading change [rad] of leaving a posture of the gait for rest."""
-    if isinstance(gait, WaveGait):
-        chain = PlanarChain.of_robot(robot)
-        return lambda yaw: unbend_heading(chain, yaw)
-    lifted = RestingChain(robot)
-
-    def lie_down(posture: NDArray[np.float64]) -> float:
-        try:
-            return lie_down_heading(lifted, posture)
-        except ConvergenceError:
-            return 0.0  # a posture that rolls over has no heading to predict
-
-    return lie_down

@@ -34,6 +34,7 @@ Array = NDArray[np.float64]
 
 AT_REST = 1e-3  # [rad] from the rest shape: nothing to unbend
 SAME_SHAPE = 1e-4  # [rad] between start shapes: no move needed
+SAME_SCALE = 0.05  # start postures this close are reached without a rest
 NEGLIGIBLE_TURN = 1e-6  # [rad]
 LARGEST_TURN = 1e9  # [rad] two centuries of turning; doubles still resolve its progress
 GATE_TIME = 0.5  # [s] over which a cycle lets amplitude offsets in and, at its end, out again
@@ -256,6 +257,8 @@ class GaitController:
         if abs(rest) <= self._tolerance or state.cycles >= state.budget:
             return self._move_to_rest(state)
         scale = plan_turn(rest, self.gait.calibration, state.ratio).scale
+        if not self.gait.gait.scales_size and abs(scale - state.scale) > SAME_SCALE:
+            return self._move_to_rest(state)  # and plan again from there
         return self._move_to_start(state, scale, bend)
 
     def _judge_cycle(self, state: ControllerState) -> ControllerState:
@@ -267,6 +270,8 @@ class GaitController:
         measured = state.heading.progress - state.cycle_start
         ratio = min(max(measured / predicted, RATIO_RANGE[0]), RATIO_RANGE[1])
         if abs(predicted) < LEARNED_FROM:
+            if not self.gait.gait.scales_size:
+                return state
             return replace(state, ratio=ratio)
         return replace(state, ratio=ratio, ground_ratio=0.5 * (state.ground_ratio + ratio))
 

@@ -36,12 +36,15 @@ class Gait(ABC):
 
     Attributes:
         complies: amplitude offsets apply to it.
+        scales_size: the scale multiplies every angle, so start postures lie on one line from rest
+            and errors of the prediction grow with it. Others go through rest to another scale.
         moves: what it calls the joints it moves.
     """
 
     __slots__ = ()
 
     complies: ClassVar[bool] = False
+    scales_size: ClassVar[bool] = False
     moves: ClassVar[str] = 'joints'
 
     def joints_of(self, robot: Robot) -> NDArray[np.intp]:

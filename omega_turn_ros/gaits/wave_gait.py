@@ -27,6 +27,7 @@ class WaveGait(Gait):
     __slots__ = ()
 
     complies: ClassVar[bool] = True
+    scales_size: ClassVar[bool] = True
     moves: ClassVar[str] = 'yaw joints'
 
     k_f: float

@@ -14,7 +14,7 @@ from omega_turn_ros.gaits.library import LibraryGait
 from omega_turn_ros.gaits.wave_gait import WaveGait
 from omega_turn_ros.mechanics.chain import PlanarChain
 from omega_turn_ros.mechanics.quasi_static import QuasiStatic
-from omega_turn_ros.mechanics.trajectory import straight_path
+from omega_turn_ros.mechanics.trajectory import path_through, straight_path
 from omega_turn_ros.robot import Robot
 
 Array = NDArray[np.float64]
@@ -80,7 +80,8 @@ def calibrate_postures(
             signed = side * max(float(scale), NO_SCALE)
             path = np.array([played.at(p, signed, (0.0, 0.0)) for p in phases])
             heading[k] += 0.5 * side * heading_along(path)[::steps_per_phase]
-            bend[k] += 0.5 * side * heading_along(straight_path(played.rest, path[0]))[-1]
+            rising = path_through(played.rest, played.waypoint(path[0]), path[0])
+            bend[k] += 0.5 * side * heading_along(rising)[-1]
             fastest = float(np.abs(np.diff(path, axis=0)).max())
             peak = max(peak, fastest * steps / (2.0 * np.pi))
     # What it drifts at scale 0 is no turn. It fades with the scale, so that turns begin at 0.

@@ -28,11 +28,11 @@ def heading_to_rest(robot: Robot, gait: Gait) -> Callable[[Array], float]:
     if isinstance(gait, WaveGait):
         planar = PlanarChain.of_robot(robot)
         return lambda yaw: unbend_heading(planar, yaw)
-    lifted = RestingChain(robot)
+    lifted, played = RestingChain(robot), gait.on(robot)
 
     def lie_down(posture: Array) -> float:
         try:
-            return lie_down_heading(lifted, posture)
+            return lie_down_heading(lifted, posture, played.waypoint(posture))
         except ConvergenceError:
             return 0.0
 

@@ -143,8 +143,9 @@ def _start_phase(chain: RestingChain, gait: Sidewinding) -> float:
     """Phase whose postures turn the robot least on the way from rest [rad]."""
     played = gait.on(chain.robot)
     phases = 2.0 * np.pi * np.arange(START_PHASES) / START_PHASES
-    cost = [
-        sum(lie_down_heading(chain, played.at(p, s, (0.0, 0.0))) ** 2 for s in START_SCALES)
-        for p in phases
-    ]
-    return float(phases[int(np.argmin(cost))])
+
+    def cost(phase: float) -> float:
+        postures = [played.at(phase, scale, (0.0, 0.0)) for scale in START_SCALES]
+        return sum(lie_down_heading(chain, q, played.waypoint(q)) ** 2 for q in postures)
+
+    return float(min(phases, key=cost))

@@ -26,7 +26,7 @@ from omega_turn_ros.gaits.controller_state import (
 )
 from omega_turn_ros.gaits.library import LibraryGait
 from omega_turn_ros.gaits.limits import JointLimits, limit_command
-from omega_turn_ros.gaits.move import move_between
+from omega_turn_ros.gaits.move import Move, move_between, move_through
 from omega_turn_ros.gaits.turn_plan import plan_turn
 from omega_turn_ros.robot import Robot
 
@@ -34,6 +34,7 @@ Array = NDArray[np.float64]
 
 AT_REST = 1e-3  # [rad] from the rest shape: nothing to unbend
 SAME_SHAPE = 1e-4  # [rad] between start shapes: no move needed
+NEAR = 0.1  # [rad] a move this short passes no waypoint
 SAME_SCALE = 0.05  # start postures this close are reached without a rest
 NEGLIGIBLE_TURN = 1e-6  # [rad]
 LARGEST_TURN = 1e9  # [rad] two centuries of turning; doubles still resolve its progress
@@ -290,7 +291,7 @@ class GaitController:
                 turned=0.0,
                 cycle_start=state.heading.progress,
             )
-        move = move_between(command, target, self._move_velocity(), bend)
+        move = self._plan_move(command, target, self._played.waypoint(target), bend)
         return replace(
             state, mode=Mode.MOVING, move=move, to_cycle=True, scale=scale, phase_rate=0.0
         )
@@ -301,10 +302,17 @@ class GaitController:
         rest = self._played.rest
         if np.abs((command - rest)[self._joints]).max() > AT_REST:
             heading_change = self._unbend_heading(command[self._joints])
-        move = move_between(command, rest, self._move_velocity(), heading_change)
+        move = self._plan_move(command, rest, self._played.waypoint(command), heading_change)
         return replace(
             state, mode=Mode.MOVING, move=move, to_cycle=False, phase_rate=0.0, settling=0.0
         )
+
+    def _plan_move(self, start: Array, end: Array, waypoint: Array | None, bend: float) -> Move:
+        velocity = self._move_velocity()
+        near = np.abs(end - start).max() < NEAR
+        if waypoint is None or near:
+            return move_between(start, end, velocity, bend)
+        return move_through(start, waypoint, end, velocity, bend)
 
     def _helps(self, state: ControllerState, goal: float) -> bool:
         """Whether finishing the cycle under way leads towards the new goal, not past it."""

@@ -20,6 +20,9 @@ class PlayedGait(Protocol):
     def rest(self) -> Array:
         """Posture between turns [rad], shape (n_joints,)."""
 
+    def waypoint(self, posture: Array) -> Array | None:
+        """Posture to pass between rest and a posture [rad], (n_joints,); None: straight there."""
+
     def at(self, phase: float, scale: float, offsets: tuple[float, float]) -> Array:
         """Angles of all joints of the robot [rad], shape (n_joints,).
 

@@ -35,6 +35,9 @@ class Postures:
         self._table = np.zeros((4, n_joints))
         self._table[:, yaw_indices] = [f(wave) for wave in waves for f in (np.cos, np.sin)]
 
+    def waypoint(self, posture: Array) -> None:
+        """See `PlayedGait.waypoint`."""
+
     def at(self, phase: float, scale: float, offsets: tuple[float, float]) -> Array:
         """Joint angles [rad], shape (n_joints,).
 

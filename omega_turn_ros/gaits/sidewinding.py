@@ -101,6 +101,7 @@ class SidewindingPostures:
         yaw, pitch = axes == 'yaw', axes == 'pitch'
         if not pitch.any() or not (yaw | pitch).all():
             raise BadInputError('robot', robot.name, 'yaw and pitch joints, for sidewinding')
+        self._flat = yaw
         place = np.arange(robot.n_joints) + robot.head_length / robot.module_length
         lag = 2.0 * math.pi * gait.k_h * place / robot.n_joints
         self.rest: Array = np.zeros(robot.n_joints)
@@ -115,6 +116,13 @@ class SidewindingPostures:
         amplitude = self._left if scale >= 0.0 else self._right
         posture: Array = amplitude * np.sin(phase + self._lag + abs(scale) * self._drift)
         return posture
+
+    def waypoint(self, posture: Array) -> Array:
+        """See `PlayedGait.waypoint`: bent, but flat on the ground.
+
+        Lifted half way the robot tips from one rest to another; flat it bends and unbends alike.
+        """
+        return np.where(self._flat, posture, 0.0)
 
     def cycle(self, phases: Array, scale: float) -> Array:
         """Postures at many phases [rad], shape (T,), at one scale [rad], (T, n_joints)."""

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.mechanics.force_balance import solve_balance
 from omega_turn_ros.mechanics.resting_chain import RestingChain
-from omega_turn_ros.mechanics.trajectory import integrate_twists, straight_path
+from omega_turn_ros.mechanics.trajectory import integrate_twists, path_through
 
 Array = NDArray[np.float64]
 
@@ -46,12 +46,16 @@ def resting_heading_along(chain: RestingChain, path: ArrayLike) -> Array:
     return resting_pose_along(chain, path)[:, 2]
 
 
-def lie_down_heading(chain: RestingChain, angles: ArrayLike) -> float:
+def lie_down_heading(
+    chain: RestingChain, angles: ArrayLike, waypoint: ArrayLike | None = None
+) -> float:
     """Heading change when a posture is straightened joint-linearly [rad].
 
     Args:
         chain: the robot.
         angles: of all joints [rad], shape (n_joints,).
+        waypoint: posture passed on the way, likewise.
     """
     posture = np.asarray(angles, float)
-    return float(resting_heading_along(chain, straight_path(posture, 0.0 * posture))[-1])
+    path = path_through(posture, waypoint, 0.0 * posture)
+    return float(resting_heading_along(chain, path)[-1])

@@ -64,7 +64,7 @@ class DemoOptions:
         robot: name in config/robots, or a path.
         period: duration of one gait cycle [s].
         heading_feedback: 'odom' or 'none'.
-        compliance: run the admittance node too.
+        compliance: run the admittance node too, if the gait has amplitudes that yield.
         friction: of the ground.
         terrain: name in config/terrains, or a path.
         spacing: between pegs [BL]; None takes the terrain's.
@@ -116,6 +116,7 @@ def demo_domain() -> int:
 def run_demo(options: DemoOptions) -> int:
     """Turn the robot, print the result, write turn.png, .gif, .json and .mcap; return 0."""
     gait, robot = load_gait(options.gait), load_robot(options.robot)
+    options = replace(options, compliance=options.compliance and gait.gait.complies)
     commanded = math.radians(options.turn_deg)
     predicted = plan_turn(commanded, gait.calibration).angle
     ground = view_ground(options.ground(), robot, options.seed)

@@ -29,6 +29,7 @@ class TrialLog:
     Attributes:
         count: readings taken in.
         depth: of the deepest contact seen [m], by whoever looks.
+        uprightness: least seen, by whoever looks.
     """
 
     def __init__(self, trial: ObstacleTrial) -> None:
@@ -38,6 +39,7 @@ class TrialLog:
         self._kept: list[Observation] = []
         self.count = self._cycles = 0
         self.depth = 0.0
+        self.uprightness = 1.0
         self._effort = 0.0
         self._offset = np.zeros(2)
         self._broken = 0
@@ -113,6 +115,7 @@ class TrialLog:
             'largest_offsets': self._offset.round(6).tolist(),
             'limits_broken': self._broken,
             'deepest_contact': self.depth,
+            'least_upright': self.uprightness,
             'energy': {
                 'work': self._work,
                 'peak': self._peak_energy,

@@ -46,7 +46,7 @@ READING = 0.01  # [s] between two commands
 STEP_LIMIT = 0.1  # [rad] between two commands, as the gait node's default
 WAIT = 1.0  # [s] at rest before and after the turn
 LONGEST = 3.0  # times the time the cycles take, after which the turn must have ended
-DEPTH_EVERY = 5  # readings between two looks at how deep contacts are
+DEPTH_EVERY = 5  # readings between two looks at contacts and tilt
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +62,7 @@ class ObstacleTrial:
         cycles: how many.
         period: of a cycle [s].
         friction: between feet and level ground.
+        pitch_effort: largest torque of the pitch motors [N m]; 0 takes the robot's.
         start_phase: at which cycles begin [rad]; a two-wave gait knows its own.
     """
 
@@ -80,6 +81,7 @@ class ObstacleTrial:
     cycles: int = 2
     period: float = 10.0
     friction: float = 0.5
+    pitch_effort: float = 0.0
     start_phase: float | None = None
 
     def __post_init__(self) -> None:
@@ -115,19 +117,26 @@ class ObstacleTrial:
             `angle_deg` per cycle (mean), `cycle_angles_deg`, `total_deg`; `largest_effort` [N m];
             `largest_offsets` of (forward, turning) wave [rad]; `limits_broken`, commands and
             offsets outside their limits; `deepest_contact`, how far the body presses into
-            obstacles [m]; `energy`, see `TrialLog`; and the motion: `time` [s], `poses`
-            x [m], y [m], heading [rad], `yaw_angles` [rad].
+            obstacles [m]; `least_upright`, see `Simulation.uprightness`; `energy`, see
+            `TrialLog`; and the motion: `time` [s], `poses` x [m], y [m], heading [rad],
+            `yaw_angles` [rad].
         """
         from omega_turn_lab.obstacle_log import TrialLog
         from omega_turn_sim_bridge.simulation import Simulation, SimulationConfig
 
-        config = SimulationConfig(terrain=self.terrain, seed=self.seed, friction=self.friction)
+        config = SimulationConfig(
+            terrain=self.terrain,
+            seed=self.seed,
+            friction=self.friction,
+            pitch_effort_limit=self.pitch_effort,
+        )
         log = TrialLog(self)
         with Simulation(self.robot, config) as simulation:
             for seen, output, state, cycles in _readings(self, simulation):
                 log.take(seen, output, state, cycles)
                 if log.count % DEPTH_EVERY == 0:
                     log.depth = max(log.depth, simulation.obstacle_depth())
+                    log.uprightness = min(log.uprightness, simulation.uprightness())
         return log.result()
 
 

@@ -88,6 +88,8 @@ def _turn(
             _hear_out(executor, client)
     finally:
         client.destroy_node()
+    if client.jams:
+        print('the robot was jammed: motors strained and cycles got nowhere', file=sys.stderr)
     _check_end(client)
     heading = client.heading_change
     measured = '' if heading is None else f', odom measured {math.degrees(heading):+.1f} deg'
@@ -159,5 +161,6 @@ def _follow(
         while not client.over and not interrupted.is_set():
             executor.spin_once(timeout_sec=0.1)
             bar.n = min(max(size_deg - abs(math.degrees(client.left)), 0.0), size_deg)
+            bar.set_description('jammed' if client.jammed else 'turning', refresh=False)
             bar.update(0)
         bar.refresh()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from diagnostic_msgs.msg import DiagnosticArray
 from nav_msgs.msg import Odometry
 from rclpy.context import Context
 from rclpy.event_handler import QoSLivelinessChangedInfo, SubscriptionEventCallbacks
@@ -12,7 +13,7 @@ from rclpy.node import Node
 from std_msgs.msg import Float64
 
 from omega_turn_ros.errors import BadInputError
-from omega_turn_ros.nodes.messages import heading_of
+from omega_turn_ros.nodes.messages import JAMMED, heading_of
 from omega_turn_ros.nodes.qos import REMAINING_INPUT, REQUEST, STATE_INPUT
 
 
@@ -28,6 +29,8 @@ class TurnClient(Node):
         left: the last of it that was not 0.0, or the angle sent [rad].
         accepted: the gait node has taken up the turn.
         gone: the gait node lived, and lives no more.
+        jammed: the gait node says the last cycle got nowhere.
+        jams: how often it began to say so since the turn was sent.
         other: what another client commanded after us [rad]; None for nothing.
     """
 
@@ -35,7 +38,8 @@ class TurnClient(Node):
         super().__init__('omega_turn_client', context=context, **options)
         self.remaining: float | None = None
         self.left = 0.0
-        self.accepted = self.gone = False
+        self.accepted = self.gone = self.jammed = False
+        self.jams = 0
         self.other: float | None = None
         self._sent: list[float] = []
         self._own_heard = False
@@ -49,6 +53,7 @@ class TurnClient(Node):
             Float64, 'turn_remaining', self._on_remaining, REMAINING_INPUT, event_callbacks=alive
         )
         self.create_subscription(Odometry, 'odom', self._on_odom, STATE_INPUT)
+        self.create_subscription(DiagnosticArray, 'diagnostics', self._on_diagnostics, REQUEST)
 
     @property
     def connected(self) -> bool:
@@ -77,6 +82,7 @@ class TurnClient(Node):
         """Publish a turn [rad]."""
         if angle != 0.0:
             self.left, self.accepted, self._heading_change = angle, False, 0.0
+            self.jammed, self.jams = False, 0
         self._sent.append(angle)
         self._publisher.publish(Float64(data=angle))
 
@@ -94,6 +100,13 @@ class TurnClient(Node):
 
     def _on_liveliness(self, event: QoSLivelinessChangedInfo) -> None:
         self.gone = event.alive_count == 0 and event.alive_count_change < 0
+
+    def _on_diagnostics(self, message: DiagnosticArray) -> None:
+        for status in message.status:
+            if status.name.endswith('gait_node'):
+                jammed = JAMMED in status.message
+                self.jams += jammed and not self.jammed
+                self.jammed = jammed
 
     def _on_odom(self, message: Odometry) -> None:
         try:

@@ -92,6 +92,15 @@ BRIDGE_PARAMETERS = (
         'effort_limit', 0.0, "Largest motor torque; 0: robot's.", 'N m', 0.0, 1e3, read_only=True
     ),
     Spec(
+        'pitch_effort_limit',
+        0.0,
+        'Of pitch motors; weak ones follow uneven ground; 0: as the others.',
+        'N m',
+        0.0,
+        1e3,
+        read_only=True,
+    ),
+    Spec(
         'velocity_limit', 0.0, "Largest motor speed; 0: robot's.", 'rad/s', 0.0, 50, read_only=True
     ),
     Spec('servo_frequency', 5.0, 'Bandwidth of the motors.', 'Hz', 0.5, 100.0, read_only=True),
@@ -122,6 +131,7 @@ def make_config(values: Mapping[str, Any]) -> SimulationConfig:
         solver_iterations=values['solver_iterations'],
         friction=values['friction'],
         effort_limit=values['effort_limit'],
+        pitch_effort_limit=values['pitch_effort_limit'],
         velocity_limit=values['velocity_limit'],
         servo_frequency=values['servo_frequency'],
         position_noise=values['position_noise'],

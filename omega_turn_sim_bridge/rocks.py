@@ -18,12 +18,8 @@ Array = NDArray[np.float64]
 
 CORNERS = 24  # of each rock before the hull is taken
 SPREAD = 0.12  # standard deviation of the sizes, relative
-FLATNESS = (
-    1.05,
-    0.95,
-    0.65,
-)  # axes of the mean rock over its diameter: rocks lie on the flat side
-PACKING = 0.8  # distance of neighbours before they fall, over the mean diameter
+FLATNESS = (1.05, 0.95, 0.65)  # axes of the mean rock over its diameter: rocks lie flat
+PACKING = 0.9  # distance of neighbours before they fall, over the mean diameter
 TILT = 0.3  # [rad] standard deviation of the slant they are dropped at
 SETTLE_TIME = 3.0  # [s] given to the pile
 SETTLE_STEP = 1.0 / 120.0  # [s]
@@ -43,6 +39,17 @@ class RockPile:
     corners: tuple[tuple[tuple[float, float, float], ...], ...]
     positions: tuple[tuple[float, float, float], ...]
     orientations: tuple[tuple[float, float, float, float], ...]
+
+    @property
+    def tops(self) -> Array:
+        """Height of each rock's highest corner [m], shape (n_rocks,)."""
+        turns = [pybullet.getMatrixFromQuaternion(q)[6:] for q in self.orientations]
+        return np.array(
+            [
+                place[2] + (np.array(corners) @ np.array(up)).max()
+                for corners, place, up in zip(self.corners, self.positions, turns)
+            ]
+        )
 
 
 @lru_cache(maxsize=4)

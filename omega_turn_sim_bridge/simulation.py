@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 
 # Positions in the tuples PyBullet returns.
 JOINT_POSITION, JOINT_VELOCITY, JOINT_MOTOR_TORQUE = 0, 1, 3
-LINK_COM_POSITION, LINK_COM_VELOCITY = 0, 6
+LINK_COM_POSITION, LINK_COM_TURN, LINK_COM_VELOCITY = 0, 1, 6
 CONTACT_BODY_B, CONTACT_DISTANCE = 2, 8
 
 BULLET_DAMPING = 0.1  # [N s/m] what a body has that was given none
@@ -45,6 +45,8 @@ class SimulationConfig:
             contact is statically indeterminate and lets friction act at random places.
         contact_damping: of each foot [N s/m].
         effort_limit: largest motor torque [N m]; 0 takes the robot's own.
+        pitch_effort_limit: the same of pitch motors; 0 takes `effort_limit`. Weak ones let a robot
+            that turns in the plane follow uneven ground.
         velocity_limit: largest motor speed [rad/s]; 0 takes the robot's own.
         servo_frequency: bandwidth of the motors' own position control [Hz].
         position_noise: standard deviation of the joint position readings [rad].
@@ -60,6 +62,7 @@ class SimulationConfig:
     contact_stiffness: float = 5e3
     contact_damping: float = 100.0
     effort_limit: float = 0.0
+    pitch_effort_limit: float = 0.0
     velocity_limit: float = 0.0
     servo_frequency: float = 5.0
     position_noise: float = 0.0
@@ -75,6 +78,7 @@ class SimulationConfig:
             'friction',
             'contact_damping',
             'effort_limit',
+            'pitch_effort_limit',
             'velocity_limit',
             'position_noise',
             'effort_noise',
@@ -288,6 +292,18 @@ class Simulation:
         depths = [-c[CONTACT_DISTANCE] for c in contacts if c[CONTACT_BODY_B] != level]
         return max(0.0, *depths) if depths else 0.0
 
+    def uprightness(self) -> float:
+        """Cosine of the bodies' tilt, mean: 1 lying as it was put, -1 upside down.
+
+        Raises:
+            SimulationError: the client has been closed.
+        """
+        self._check_open()
+        _, base = pybullet.getBasePositionAndOrientation(self._body, physicsClientId=self._client)
+        links = pybullet.getLinkStates(self._body, self._joints, physicsClientId=self._client)
+        turns = np.array([base] + [s[LINK_COM_TURN] for s in links])
+        return float(np.mean(1.0 - 2.0 * (turns[:, 0] ** 2 + turns[:, 1] ** 2)))
+
     def hold_posture(self) -> None:
         """Make the present posture the motor target.
 
@@ -366,7 +382,10 @@ class Simulation:
                 jointDamping=0.0,
                 physicsClientId=client,
             )
-        self._forces = [self._effort_limit] * self.robot.n_joints
+        pitch = config.pitch_effort_limit or self._effort_limit
+        self._forces = [
+            self._effort_limit if axis == 'yaw' else pitch for axis in self.robot.joint_axes
+        ]
         self._position_gains = [0.3] * self.robot.n_joints
         self._velocity_gains = [1.0] * self.robot.n_joints
         self.reset()

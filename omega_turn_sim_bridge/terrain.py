@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from omega_turn_ros.mechanics.force_laws import GranularResistance
 from omega_turn_ros.robot import Robot
 from omega_turn_sim_bridge.engine import pybullet
@@ -55,13 +57,14 @@ def build_ground(
         from omega_turn_sim_bridge.rocks import build_rocks, settled_pile
 
         size, extent = (x * robot.length for x in (config.rock_size_bl, config.extent_bl))
-        rocks = build_rocks(client, settled_pile(size, extent, seed), config, friction)
-        top = _top_under(client, robot)
+        pile = settled_pile(size, extent, seed)
+        rocks = build_rocks(client, pile, config, friction)
         if config.rock_relief_bl > 0.0:
-            soil = max(0.0, top - config.rock_relief_bl * robot.length)
+            soil = float(np.median(pile.tops)) - config.rock_relief_bl * robot.length
             pybullet.resetBasePositionAndOrientation(
-                level, (0, 0, soil), (0, 0, 0, 1), physicsClientId=client
+                level, (0, 0, max(0.0, soil)), (0, 0, 0, 1), physicsClientId=client
             )
+        top = _top_under(client, robot)
         return Ground((level, *rocks), (level, *rocks), solid='square', top=top)
     if config.kind == 'granular':
         law = GranularResistance.of_ratio(config.resistance_ratio)

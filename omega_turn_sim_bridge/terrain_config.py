@@ -28,8 +28,8 @@ class TerrainConfig:
         peg_friction: coefficient between body and peg.
         clearance: least gap between straight robot and pegs at the start [m].
         rock_size_bl: mean diameter of the rocks [BL].
-        rock_relief_bl: soil fills the pile up to this far below its highest rock under the robot
-            [BL]; 0 leaves the gaps open down to the ground.
+        rock_relief_bl: soil fills the pile up to this far below the top of its median rock [BL];
+            0 leaves the gaps open down to the ground.
         rock_friction: coefficient between body and rock.
         resistance_ratio: of grains, to sliding sideways over to sliding lengthways.
     """
@@ -42,7 +42,7 @@ class TerrainConfig:
     peg_friction: float = 0.2
     clearance: float = 0.01
     rock_size_bl: float = 0.3
-    rock_relief_bl: float = 0.05
+    rock_relief_bl: float = 0.03
     rock_friction: float = 0.5
     resistance_ratio: float = 1.5
 

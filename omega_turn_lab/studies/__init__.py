@@ -10,6 +10,7 @@ NAMES = (
     'joints',
     'granular',
     'pegboard',
+    'rocks',
     'height',
     'sensitivity',
     'beyond',

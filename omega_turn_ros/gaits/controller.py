@@ -151,6 +151,8 @@ class GaitController:
             target = changes['move'].position
         elif running and state.mode is Mode.CYCLING:
             changes, target, predicted = self._step_cycle(state, dt)
+            if inputs.effort > 0.0:
+                changes['jam'] = state.jam.advanced(inputs.effort, self.robot.effort_limit, dt)
         elif state.mode is Mode.CYCLING:
             changes['phase_rate'] = 0.0
         measured = inputs.heading if self.config.heading_feedback else None
@@ -269,6 +271,7 @@ class GaitController:
         if not self.config.heading_feedback or abs(predicted) < JUDGED_FROM:
             return state
         measured = state.heading.progress - state.cycle_start
+        state = replace(state, jam=state.jam.judged(measured, predicted, self.config.period))
         ratio = min(max(measured / predicted, RATIO_RANGE[0]), RATIO_RANGE[1])
         if abs(predicted) < LEARNED_FROM:
             if not self.gait.gait.scales_size:

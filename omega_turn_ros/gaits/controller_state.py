@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from omega_turn_ros.gaits.heading import HeadingTracker
+from omega_turn_ros.gaits.jam import JamWatch
 from omega_turn_ros.gaits.move import Move
 
 Array = NDArray[np.float64]
@@ -65,12 +66,14 @@ class Inputs:
         fresh: the positions are recent enough to act on.
         heading: measured heading [rad], any branch; None when there is none or it is stale.
         offsets: wanted offsets of (A_f, A_t) [rad]; (0, 0) when there are none.
+        effort: largest |effort| of any joint [N m]; 0 where it is not measured.
     """
 
     positions: Array | None = None
     fresh: bool = False
     heading: float | None = None
     offsets: tuple[float, float] = (0.0, 0.0)
+    effort: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +101,7 @@ class ControllerState:
         settling: time at rest since the last move [s].
         catching_up: time since joint states came back [s]; None in normal running.
         limited: commands changed by a limit so far.
+        jam: whether the robot is stuck.
     """
 
     mode: Mode = Mode.WAITING
@@ -120,6 +124,7 @@ class ControllerState:
     settling: float = 0.0
     catching_up: float | None = None
     limited: int = 0
+    jam: JamWatch = field(default_factory=JamWatch)
 
     @property
     def remaining(self) -> float:

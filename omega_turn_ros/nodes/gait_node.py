@@ -21,7 +21,13 @@ from omega_turn_ros.nodes.gait_parameters import GAIT_PARAMETERS, make_controlle
 from omega_turn_ros.nodes.health import PUBLISH_EVERY, Freshness, Health, steady_clock
 from omega_turn_ros.nodes.inbox import Inbox
 from omega_turn_ros.nodes.joint_message import JointReader, JointWriter
-from omega_turn_ros.nodes.messages import heading_of, read_offsets, text_of_end, text_of_request
+from omega_turn_ros.nodes.messages import (
+    JAMMED,
+    heading_of,
+    read_offsets,
+    text_of_end,
+    text_of_request,
+)
 from omega_turn_ros.nodes.parameters import DECLARE_GIVEN, NodeParameters
 from omega_turn_ros.nodes.qos import COMMAND, REMAINING, REQUEST, STATE, STATE_INPUT
 from omega_turn_ros.nodes.raw_joint_states import RawStateReader
@@ -173,13 +179,14 @@ class GaitNode(Node):
 
     def _read_inputs(self) -> None:
         positions, heading, offsets = self._inputs.positions, self._heading, self._inputs.offsets
+        effort = self._inputs.effort
         for data in self._joint_states.drain():
             try:
                 reading = self._joint_reader.read(data)
             except BadInputError as error:
                 self._health.refuse('joint_states', str(error))
             else:
-                positions = reading.positions
+                positions, effort = reading.positions, reading.effort
                 self._stamps['joint_states'] = reading.seconds * 10**9 + reading.nanoseconds
                 if self._lock_step:
                     self._last_stamp = Time(sec=reading.seconds, nanosec=reading.nanoseconds)
@@ -212,6 +219,7 @@ class GaitNode(Node):
             self._states_seen.fresh,
             heading,
             offsets if compliant else (0.0, 0.0),
+            effort,
         )
 
     def _advance(self, dt: float, stamp: Time) -> None:
@@ -274,6 +282,11 @@ class GaitNode(Node):
             problems.append('odom stale: heading predicted')
             if state.goal is not None:
                 self._health.warn('odom', 'no odom: heading is predicted')
+        if state.jam.jammed and state.goal is not None:
+            problems.append(JAMMED)
+            self._health.warn(
+                'jam', f'{JAMMED}: the last cycle got nowhere, with motors straining'
+            )
         if abs(state.shortfall) > 2.0 * values['heading_tolerance']:
             problems.append('last turn ended short')
         facts = {
@@ -285,6 +298,7 @@ class GaitNode(Node):
             'ground ratio': state.ground_ratio,
             'shortfall [rad]': state.shortfall,
             'commands limited': state.limited,
+            'cycles in a jam': state.jam.cycles,
             'heading jumps left out': state.heading.jumps,
             'clock jumps': self._time.jumps,
             'amplitude offsets [rad]': state.offsets,

@@ -10,6 +10,8 @@ from sensor_msgs.msg import JointState
 from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.nodes.joint_message import JointReader
 
+JAMMED = 'jammed'  # in diagnostics, while a turn goes on and gets nowhere
+
 
 def heading_of(message: Odometry) -> float:
     """Heading of the pose [rad], in -pi..pi.

@@ -28,11 +28,13 @@ class Reading(NamedTuple):
         seconds: of the stamp.
         nanoseconds: of the stamp.
         positions: [rad], shape (n_joints,), in the reader's order.
+        effort: largest |effort| in the message [N m], NaN aside; 0 where there is none.
     """
 
     seconds: int
     nanoseconds: int
     positions: Array
+    effort: float
 
 
 class RawStateReader:
@@ -52,7 +54,7 @@ class RawStateReader:
         self._layout: _Layout | None = None
 
     def read(self, data: bytes) -> Reading:
-        """Return stamp and positions.
+        """Return stamp, positions and the largest effort.
 
         Raises:
             BadInputError: the bytes are no JointState, or as `JointReader.read`.
@@ -62,7 +64,7 @@ class RawStateReader:
             positions: Array = layout.positions(data)[layout.order]
             if np.isfinite(positions).all():
                 seconds, nanoseconds = STAMP.unpack_from(data, CDR_HEADER)
-                return Reading(seconds, nanoseconds, positions)
+                return Reading(seconds, nanoseconds, positions, largest(layout.efforts(data)))
         try:
             message = deserialize_message(data, JointState)
         except RuntimeError as error:  # RMWError, which rclpy keeps to itself
@@ -70,7 +72,12 @@ class RawStateReader:
         positions = self._reader.read(message, 'position')
         self._layout = _Layout(message, self._reader.order)
         stamp = message.header.stamp
-        return Reading(stamp.sec, stamp.nanosec, positions)
+        return Reading(stamp.sec, stamp.nanosec, positions, largest(np.array(message.effort)))
+
+
+def largest(efforts: Array) -> float:
+    """Return the largest |effort|, NaN aside; 0 of none."""
+    return float(np.fmax.reduce(np.abs(efforts), initial=0.0))
 
 
 class _Layout:
@@ -97,6 +104,8 @@ class _Layout:
                 self._skip(8 * len(numbers), 8)
             ends.append(len(self._mask))
         self._start = ends[0] - 8 * self._count
+        self._efforts = len(message.effort)
+        self._efforts_start = ends[2] - 8 * self._efforts
         # Long integers: what writers leave in the gaps of alignment is garbage and must not count.
         self._mask_bits = int.from_bytes(self._mask, 'little')
         self._wanted_bits = int.from_bytes(self._wanted, 'little')
@@ -109,6 +118,10 @@ class _Layout:
     def positions(self, data: bytes) -> Array:
         """Joint positions in the message's order [rad]."""
         return np.frombuffer(data, '<f8', self._count, self._start)
+
+    def efforts(self, data: bytes) -> Array:
+        """Joint efforts in the message's order [N m], empty where it has none."""
+        return np.frombuffer(data, '<f8', self._efforts, self._efforts_start)
 
     def _skip(self, size: int, alignment: int = 1) -> None:
         size += (CDR_HEADER - len(self._mask)) % alignment

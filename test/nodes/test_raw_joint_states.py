@@ -46,17 +46,19 @@ def messages(draw: Any) -> JointState:
 
 def outcome(read: Any, data: bytes) -> Any:
     try:
-        seconds, nanoseconds, positions = read(data)
+        seconds, nanoseconds, positions, effort = read(data)
     except BadInputError as error:
         return str(error)
-    return seconds, nanoseconds, positions.tobytes()
+    return seconds, nanoseconds, positions.tobytes(), effort
 
 
 def long_way(reader: JointReader) -> Any:
     def read(data: bytes) -> Any:
         message = deserialize_message(data, JointState)
         stamp = message.header.stamp
-        return stamp.sec, stamp.nanosec, reader.read(message, 'position')
+        efforts = [abs(e) for e in message.effort if not math.isnan(e)]
+        positions = reader.read(message, 'position')
+        return stamp.sec, stamp.nanosec, positions, max(efforts, default=0.0)
 
     return read
 

@@ -1,0 +1,168 @@
+"""Four turning gaits on hard ground and on a pile of rocks, open loop (Sec. IV.I).
+
+The paper's pile is as an outdoor one happens to be; ours are seeded, and filled with soil up to
+some way below the tops, see `config/terrains/rocks.yaml`. A robot whose body is held straight
+rolls over where it rests on two rocks; planar gaits are tried with pitch motors weak enough for
+the body to follow the ground.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from omega_turn_lab.obstacle_trial import ObstacleTrial
+from omega_turn_lab.studies.figures import COLOURS, new_figure
+from omega_turn_lab.studies.published import paper_figure
+from omega_turn_lab.studies.rows import Row, params_of
+from omega_turn_lab.studies.spread import spread_of
+from omega_turn_lab.studies.study import Outcome, Plan, Study
+from omega_turn_lab.studies.tasks import DesignTask, Result
+from omega_turn_ros.gaits.library import load_gait
+from omega_turn_sim_bridge.terrain_config import TerrainConfig, load_terrain
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+NAME = 'rocks'
+PILES = 20
+FOLLOWING = 0.6  # [N m] of pitch motors; 5 links of the robot weigh as much on their joint
+PLANAR = {'omega turn': 1.0, 'offset turn': 0.0, 'geometric turn': 1.5}
+FREQUENCY = 'frequency turn'
+GAITS = (*PLANAR, FREQUENCY)
+HARD, ROCKS = 'hard ground', 'rocks'
+ROLLED = 0.0  # cosine of tilt below which a robot counts as rolled over
+SIDE, BAR = 0.2, 0.36  # of bars: from their gait's place, and width
+
+
+def _task(plan: Plan, gait: str) -> DesignTask:
+    return plan.design(PLANAR[gait])
+
+
+def _hard(outcome: Outcome, gait: str) -> ObstacleTrial:
+    """Trial of a gait on level ground, turning counter-clockwise."""
+    if gait == FREQUENCY:
+        own = load_gait('sidewinding')
+        start = own.calibration.start_phase
+        return ObstacleTrial(outcome.plan.robot, own.gait, start_phase=start)
+    return ObstacleTrial(outcome.plan.robot, outcome.gait(_task(outcome.plan, gait)))
+
+
+def _on_rocks(outcome: Outcome, gait: str, seed: int, terrain: TerrainConfig) -> ObstacleTrial:
+    effort = 0.0 if gait == FREQUENCY else FOLLOWING
+    return replace(_hard(outcome, gait), terrain=terrain, seed=seed, pitch_effort=effort)
+
+
+def _pile(outcome: Outcome, gait: str) -> list[ObstacleTrial]:
+    terrain = load_terrain('rocks')
+    return [_on_rocks(outcome, gait, seed, terrain) for seed in range(PILES)]
+
+
+def _trials(outcome: Outcome) -> list[ObstacleTrial]:
+    # Pile by pile, so that an interrupted run has a little of everything.
+    by_gait = [_pile(outcome, gait) for gait in GAITS]
+    return [*(_hard(outcome, g) for g in GAITS), *(t for pile in zip(*by_gait) for t in pile)]
+
+
+def _tried(outcome: Outcome, gait: str) -> tuple[float, list[Result]]:
+    """Angle per cycle on hard ground [deg], and results on the piles."""
+    hard = outcome.tried[_hard(outcome, gait)]['angle_deg']
+    return hard, [outcome.tried[trial] for trial in _pile(outcome, gait)]
+
+
+def _rows(outcome: Outcome) -> list[Row]:
+    rows = []
+    for gait in GAITS:
+        params = params_of(_task(outcome.plan, gait)) if gait in PLANAR else {}
+        theory = None
+        if gait in PLANAR:
+            theory = outcome.designed[_task(outcome.plan, gait)]['angle_deg']
+        numbers = _numbers(outcome, gait) if outcome.tried else {('angle', HARD, 'deg'): None}
+        for (quantity, ground, unit), value in numbers.items():
+            paper: tuple[float | None, float | None] = (None, None)
+            if params and quantity == 'angle':
+                paper = paper_figure(NAME, f'angle_{ground.replace(" ", "_")}', params)
+            ours = theory if (quantity, ground) == ('angle', HARD) else None
+            rows.append(Row(f'{gait}, {ground}', params, quantity, unit, *paper, ours, value))
+    return rows
+
+
+def _numbers(outcome: Outcome, gait: str) -> dict[tuple[str, str, str], float | None]:
+    hard, results = _tried(outcome, gait)
+    spread = spread_of([result['angle_deg'] for result in results], outcome.plan.seed)
+    rolled = np.mean([result['least_upright'] < ROLLED for result in results])
+    return {
+        ('angle', HARD, 'deg'): hard,
+        ('angle', ROCKS, 'deg'): spread.mean,
+        ('angle_std', ROCKS, 'deg'): spread.deviation,
+        ('angle_low', ROCKS, 'deg'): spread.low,
+        ('angle_high', ROCKS, 'deg'): spread.high,
+        ('kept', ROCKS, '1'): spread.mean / hard,
+        ('rolled_over', ROCKS, '1'): float(rolled),
+    }
+
+
+def _records(outcome: Outcome) -> list[dict[str, Any]]:
+    if not outcome.tried:
+        return []
+    return [
+        {'terrain': trial.terrain.kind, 'gait': gait, 'seed': trial.seed}
+        | _without_motion(outcome.tried[trial])
+        for gait in GAITS
+        for trial in [_hard(outcome, gait), *_pile(outcome, gait)]
+    ]
+
+
+def _without_motion(result: Result) -> Result:
+    return {k: v for k, v in result.items() if k not in ('time', 'poses', 'yaw_angles')}
+
+
+def _draw(outcome: Outcome, out: Path) -> None:
+    """Bars of the four gaits on both grounds, every pile as a dot."""
+    if not outcome.tried:
+        return
+    with new_figure(out / f'{NAME}.png', 2.9) as figure:
+        axes = figure.add_subplot()
+        for i, gait in enumerate(GAITS):
+            _draw_gait(axes, outcome, gait, i)
+        axes.axhline(0.0, color='k', linewidth=0.6)
+        axes.set_xticks(range(len(GAITS)), GAITS)
+        axes.set_ylabel('angle per cycle [deg]')
+        handles, labels = axes.get_legend_handles_labels()
+        named = dict(zip(labels, handles))
+        figure.legend(named.values(), named.keys(), loc='outside upper center', ncols=2)
+
+
+def _draw_gait(axes: Axes, outcome: Outcome, gait: str, place: float) -> None:
+    hard, results = _tried(outcome, gait)
+    found = [result['angle_deg'] for result in results]
+    spread = spread_of(found, outcome.plan.seed)
+    left, right = place - SIDE, place + SIDE
+    axes.bar(left, hard, BAR, color=COLOURS[0], label=HARD)
+    axes.bar(right, spread.mean, BAR, color=COLOURS[1], label='rocks, mean and 95 % interval')
+    reach = [[spread.mean - spread.low], [spread.high - spread.mean]]
+    axes.errorbar(right, spread.mean, reach, color='k', capsize=3.0)
+    spots = right + np.linspace(-0.4, 0.4, len(found)) * BAR
+    axes.plot(spots, found, '.', color='0.25', ms=3.0, label='one pile')
+    if gait in PLANAR:
+        params = params_of(_task(outcome.plan, gait))
+        for x, ground in ((left, 'hard_ground'), (right, 'rocks')):
+            mean, deviation = paper_figure(NAME, f'angle_{ground}', params)
+            if mean is not None:
+                style: dict[str, Any] = {'marker': 'D', 'mfc': 'w', 'mec': 'k', 'ms': 4.0}
+                axes.errorbar(x, mean, deviation, color='k', label='paper, mean ± std', **style)
+
+
+STUDY = Study(
+    NAME,
+    'Turning on a pile of rocks: angle per cycle, two cycles per trial',
+    lambda plan: [_task(plan, gait) for gait in PLANAR],
+    _rows,
+    _draw,
+    played=False,
+    trials=_trials,
+    records=_records,
+)

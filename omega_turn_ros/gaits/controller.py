@@ -272,7 +272,7 @@ class GaitController:
         ratio = min(max(measured / predicted, RATIO_RANGE[0]), RATIO_RANGE[1])
         if abs(predicted) < LEARNED_FROM:
             if not self.gait.gait.scales_size:
-                return state
+                ratio = max(ratio, state.ground_ratio)  # a small miss is no reason to push harder
             return replace(state, ratio=ratio)
         return replace(state, ratio=ratio, ground_ratio=0.5 * (state.ground_ratio + ratio))
 

@@ -275,7 +275,7 @@ class GaitController:
         ratio = min(max(measured / predicted, RATIO_RANGE[0]), RATIO_RANGE[1])
         if abs(predicted) < LEARNED_FROM:
             if not self.gait.gait.scales_size:
-                return state
+                ratio = max(ratio, state.ground_ratio)  # a small miss is no reason to push harder
             return replace(state, ratio=ratio)
         return replace(state, ratio=ratio, ground_ratio=0.5 * (state.ground_ratio + ratio))
 
@@ -303,7 +303,10 @@ class GaitController:
         command = self._known(state)
         heading_change = 0.0
         rest = self._played.rest
-        if np.abs((command - rest)[self._joints]).max() > AT_REST:
+        ended = state.mode is Mode.CYCLING and state.turned >= 2.0 * math.pi
+        if ended and not self.gait.gait.scales_size:
+            heading_change = -self.gait.calibration.bend_heading_of(state.scale)  # at no cost
+        elif np.abs((command - rest)[self._joints]).max() > AT_REST:
             heading_change = self._unbend_heading(command[self._joints])
         move = self._plan_move(command, rest, self._played.waypoint(command), heading_change)
         return replace(

@@ -15,7 +15,8 @@ from rosgraph_msgs.msg import Clock
 from omega_turn_ros.gaits.library import load_gait
 from omega_turn_ros.nodes.time import nanoseconds_of
 from omega_turn_ros.robot import load_robot
-from omega_turn_sim_bridge.simulation import Simulation
+from omega_turn_sim_bridge.simulation import Simulation, SimulationConfig
+from omega_turn_sim_bridge.terrain_config import load_terrain
 
 DOMAIN = 87
 READINGS = 1000
@@ -29,11 +30,12 @@ def command_at(gait, robot, k: int) -> np.ndarray:
     return posture
 
 
-def measure_steps() -> None:
+def measure_steps(terrain: str) -> None:
     """Alternate both kinds of step on the same moving robot, so both see the same contacts."""
     robot, gait = load_robot('limbless16'), load_gait('omega')
     bare, ours = 0.0, 0.0
-    with Simulation(robot) as simulation:
+    config = SimulationConfig(terrain=load_terrain(terrain))
+    with Simulation(robot, config) as simulation:
         for k in range(READINGS):
             simulation.command(command_at(gait, robot, k))
             if k % 2:
@@ -46,10 +48,12 @@ def measure_steps() -> None:
                 simulation.step(STEPS)
                 simulation.observe()
                 ours += time.perf_counter() - start
+        simulated = READINGS / 2 * STEPS * simulation.config.time_step
     half = READINGS / 2
-    print(f'one reading of {STEPS} solver steps, flat ground, gait playing:')
-    print(f'  bare stepSimulation          {1e6 * bare / half:7.0f} us')
-    print(f'  commands, steps, observation {1e6 * ours / half:7.0f} us, {ours / bare:.2f} x bare')
+    print(
+        f'{terrain:9} {1e6 * bare / half:7.0f} us bare, {1e6 * ours / half:7.0f} us with commands '
+        f'and observation: {ours / bare:.2f} x bare, {simulated / ours:.1f} x real time'
+    )
 
 
 def measure_factor(seconds: float = 10.0) -> None:
@@ -77,5 +81,7 @@ def measure_factor(seconds: float = 10.0) -> None:
 
 
 if __name__ == '__main__':
-    measure_steps()
+    print(f'one reading of {STEPS} solver steps, omega gait playing, by terrain:')
+    for name in ('flat', 'granular', 'pegboard', 'rocks'):
+        measure_steps(name)
     measure_factor()

@@ -96,10 +96,10 @@ def _draw_bodies(axes: Axes, shown: Kymograph) -> None:
         axes.plot(*body.T, color='0.25', linewidth=2.0, solid_capstyle='round')
         axes.plot(*body[0], 'o', color=TURNING, markersize=3.5, clip_on=False)
         seconds = f'{shown.time[frame]:.1f} s'
-        axes.annotate(seconds, (place + 0.5, -0.32), ha='center', va='top', fontsize=6.5)
+        axes.annotate(seconds, (place + 0.5, -0.5), ha='center', va='top', fontsize=6.5)
     axes.set_xlim(0.0, SNAPSHOTS)
-    axes.set_ylim(-0.6, 0.35)
-    axes.set_aspect('equal', adjustable='datalim')
+    axes.set_ylim(-0.75, 0.5)
+    axes.set_aspect('equal')
     axes.set_axis_off()
 
 

@@ -95,9 +95,9 @@ def _from_text(path: Path) -> Array:
     except UnicodeDecodeError as error:
         raise BadInputError('file', str(path), f'text in UTF-8 ({error})') from error
     lines = [
-        (number, line.strip())
+        (number, line.strip(' '))  # no tabs: each parts two cells, if empty ones
         for number, line in enumerate(text.splitlines(), 1)
-        if line.strip() and not line.lstrip().startswith('#')
+        if line.strip(' ') and not line.lstrip().startswith('#')
     ]
     if not lines:
         raise BadInputError('file', str(path), 'a table of numbers')

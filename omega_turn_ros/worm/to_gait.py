@@ -26,6 +26,7 @@ Complex = NDArray[np.complex128]
 
 SAMPLES = 72  # of the cycle, evenly in phase
 STARTS = 8  # first guesses of the lag between the waves
+SCREENING, FITTING = 8, 200  # iterations from each of them, and from the best
 LONGEST = 20.0  # [s] what takes longer to go round is no wave
 
 
@@ -185,8 +186,8 @@ def _closed_gait(
         guess = np.zeros(3 * terms)
         guess[[0, terms]] = np.abs(second).mean(), np.abs(first).mean()
         guess[2 * terms] = 2.0 * np.pi * k / STARTS
-        fits.append(least_squares(off, guess, method='lm'))
-    best = min(fits, key=lambda fit: fit.cost)
+        fits.append(least_squares(off, guess, max_nfev=SCREENING))
+    best = least_squares(off, min(fits, key=lambda fit: fit.cost).x, max_nfev=FITTING)
     series = [[float(c) for c in part] for part in np.split(best.x, 3)]
     series[2][0] = math.remainder(series[2][0], math.tau)
     gait = FourierGait(k_f, k_t, *(tuple(part) for part in series))

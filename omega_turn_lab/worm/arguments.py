@@ -22,7 +22,7 @@ def add_worm(parser: argparse.ArgumentParser) -> None:
         default='remove',
         help='components about the mean posture of each recording, or about the straight body',
     )
-    parser.add_argument('--to-gait', action='store_true', help='make gaits for a robot too')
+    parser.add_argument('--to-gait', action='store_true', help='make a gait for a robot too')
     parser.add_argument('--robot', default='limbless16', help='name in config/robots, or a path')
     parser.add_argument('--gait-name', default='worm', help='of the gait file')
     parser.add_argument('--harmonics', type=int, default=1, help='of the series of the gait')
@@ -30,7 +30,7 @@ def add_worm(parser: argparse.ArgumentParser) -> None:
         '--pybullet',
         action=argparse.BooleanOptionalAction,
         default=True,
-        help='play the gaits in PyBullet too',
+        help='play the gait in PyBullet too',
     )
     parser.add_argument('--seed', type=int, default=0)
     parser.add_argument('--out', type=Path, default=Path('out'), help='folder for the files')

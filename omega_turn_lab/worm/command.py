@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Sequence
 from importlib.util import find_spec
@@ -17,15 +16,13 @@ from omega_turn_lab.worm.findings import GaitResult, findings
 from omega_turn_lab.worm.options import WormOptions
 from omega_turn_lab.worm.record import write_record
 from omega_turn_lab.worm.report import print_findings
-from omega_turn_ros.design.catalogue import Recipe, design_recipe
 from omega_turn_ros.errors import BadInputError, MissingPackageError
 from omega_turn_ros.gaits.library import LibraryGait, gait_to_mapping
 from omega_turn_ros.robot import Robot, load_robot
-from omega_turn_ros.worm.analysis import WormAnalysis, analyse
+from omega_turn_ros.worm.analysis import analyse
 from omega_turn_ros.worm.components import common_positions
 from omega_turn_ros.worm.kymograph import Kymograph, make_kymograph
 from omega_turn_ros.worm.table import read_table
-from omega_turn_ros.worm.template import fit_two_waves
 from omega_turn_ros.worm.to_gait import worm_gait
 from omega_turn_ros.worm.turns import Turn, find_turns
 
@@ -43,7 +40,7 @@ def run_worm(options: WormOptions) -> int:
     turns = [find_turns(trial, options.bend) for trial in trials]
     chosen = _turns_of(trials, turns) if options.turns_only else trials
     found = analyse(chosen, options.components, options.mean_posture, options.seed)
-    gaits = _make_gaits(options, trials, found, robot) if options.to_gait else []
+    gaits = _make_gaits(options, trials, robot) if options.to_gait else []
     rows = findings(found)
     seconds = time.perf_counter() - began
     stem = 'worm'
@@ -100,28 +97,16 @@ def _checked(options: WormOptions) -> Robot:
 
 
 def _make_gaits(
-    options: WormOptions, trials: Sequence[Kymograph], found: WormAnalysis, robot: Robot
+    options: WormOptions, trials: Sequence[Kymograph], robot: Robot
 ) -> list[GaitResult]:
-    """The worm's own cycle, and the robot's best gait with the worm's two wavelengths."""
-    pair = (found.waves.k_t, found.waves.k_f)
-    angles = [trial.angles for trial in trials]
-    waves = fit_two_waves(angles, angles, trials[0].fps, pair)
-    steps = tqdm(total=2 + 2 * options.pybullet, desc='making gaits', unit='step')
-    own = worm_gait(trials, waves, robot, options.gait_name, options.harmonics)
+    """The worm's turn as a gait, played and stored."""
+    steps = tqdm(total=1 + options.pybullet, desc='making a gait', unit='step')
+    made = worm_gait(trials, robot, options.gait_name, options.harmonics)
     steps.update()
-    name = f'{options.gait_name}_designed'
-    text = f"Designed on a worm's waves, k_f = {pair[1]:.3f}, k_t = {pair[0]:.3f}"
-    limit = math.degrees(robot.position_limit)
-    _, designed = design_recipe(Recipe(name, text, pair[1], pair[0], limit), robot, options.seed)
-    steps.update()
-    results = []
-    for entry, origin in ((own.entry, own), (designed, None)):
-        played = _played(robot, entry) if options.pybullet else None
-        steps.update(int(options.pybullet))
-        path = _write_gait(entry, options.out)
-        results.append(GaitResult(entry, path, played, origin))
+    played = _played(robot, made.entry) if options.pybullet else None
+    steps.update(int(options.pybullet))
     steps.close()
-    return results
+    return [GaitResult(made, _write_gait(made.entry, options.out), played)]
 
 
 def _played(robot: Robot, entry: LibraryGait) -> float:

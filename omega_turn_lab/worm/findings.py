@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from omega_turn_lab.studies.published import paper_figure
-from omega_turn_ros.gaits.library import LibraryGait
 from omega_turn_ros.worm.analysis import WormAnalysis
 from omega_turn_ros.worm.to_gait import WormGait
 
@@ -42,16 +41,14 @@ class GaitResult:
     """A gait made of a worm.
 
     Attributes:
-        entry: the gait.
+        made: the gait and how it came from the worm.
         path: its file.
         played: angle of a cycle in PyBullet [rad], None without PyBullet.
-        origin: how it came from the worm; None for the one designed on the worm's waves.
     """
 
-    entry: LibraryGait
+    made: WormGait
     path: Path
     played: float | None
-    origin: WormGait | None
 
 
 def findings(found: WormAnalysis) -> list[Finding]:

@@ -158,8 +158,9 @@ def _wave(wave: Wave) -> dict[str, Any]:
 
 
 def _gait(result: GaitResult) -> dict[str, Any]:
-    entry, origin = result.entry, result.origin
-    record: dict[str, Any] = {
+    made = result.made
+    entry, cycle = made.entry, made.cycle
+    return {
         'name': entry.name,
         'description': entry.description,
         'file': result.path.name,
@@ -167,22 +168,19 @@ def _gait(result: GaitResult) -> dict[str, Any]:
         'angle_deg': {
             'quasi_static': _degrees(entry.calibration.largest_angle),
             'pybullet': None if result.played is None else _degrees(result.played),
+            'unscaled': _degrees(made.unscaled),
         },
+        'factor': round(made.factor, 6),
+        'likeness': round(made.likeness, 6),
         'theta_max_deg': _degrees(entry.theta_max),
+        'clearance_m': round(made.clearance, 6),
+        'cycle': {
+            'recording': cycle.trial,
+            'frames': [cycle.start, cycle.stop],
+            'mean_bend_deg': _degrees(cycle.bend),
+        },
         'parameters': entry.gait.to_mapping(),
     }
-    if origin is not None:
-        record |= {
-            'cycle': {
-                'recording': origin.cycle.trial,
-                'frames': [origin.cycle.start, origin.cycle.stop],
-                'mean_bend_deg': _degrees(origin.cycle.bend),
-            },
-            'likeness': round(origin.likeness, 6),
-            'factor': round(origin.factor, 6),
-            'clearance_m': round(origin.clearance, 6),
-        }
-    return record
 
 
 def _degrees(angle: float) -> float:

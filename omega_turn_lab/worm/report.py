@@ -53,14 +53,14 @@ def _recording_line(trial: Kymograph, turns: Sequence[Turn]) -> str:
 
 
 def _gait_line(result: GaitResult) -> str:
-    entry, origin = result.entry, result.origin
+    made, entry = result.made, result.made.entry
     line = f'{entry.name}: {math.degrees(entry.calibration.largest_angle):.1f} deg per cycle'
     if result.played is not None:
         line += f', in PyBullet {math.degrees(result.played):.1f}'
-    line += f', largest joint angle {math.degrees(entry.theta_max):.1f} deg'
-    if origin is not None:
-        line += (
-            f'; frames {origin.cycle.start} to {origin.cycle.stop - 1}, {origin.factor:.2f} times '
-            f"as bent as the worm, {100.0 * origin.likeness:.0f} % of its waves' squares"
-        )
-    return f'{line}\n  written to {result.path}'
+    return (
+        f'{line}, largest joint angle {math.degrees(entry.theta_max):.1f} deg\n'
+        f'  frames {made.cycle.start} to {made.cycle.stop - 1} of the worm, {made.factor:.2f} '
+        f'times as bent; as bent as the worm it would turn by '
+        f'{math.degrees(made.unscaled):.1f} deg\n'
+        f'  written to {result.path}'
+    )

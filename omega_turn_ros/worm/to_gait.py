@@ -18,8 +18,8 @@ from omega_turn_ros.gaits.library import LibraryGait
 from omega_turn_ros.gaits.two_wave import two_wave_angles
 from omega_turn_ros.robot import Robot
 from omega_turn_ros.worm.kymograph import Kymograph
-from omega_turn_ros.worm.template import TwoWaves, Wave
-from omega_turn_ros.worm.turns import deepest_bend
+from omega_turn_ros.worm.template import TwoWaves, Wave, best_pair, fit_two_waves
+from omega_turn_ros.worm.turns import deepest_bend, find_turns
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -32,7 +32,7 @@ LONGEST = 20.0  # [s] what takes longer to go round is no wave
 
 @dataclass(frozen=True, slots=True)
 class Cycle:
-    """One cycle of the turning wave in a recording.
+    """One cycle of the forward wave in a recording.
 
     Attributes:
         trial: its index.
@@ -57,6 +57,7 @@ class WormGait:
         likeness: share of the sum of squares of the worm's two waves, over that cycle, that the
             closed gait reproduces before scaling.
         factor: of both amplitudes, so that the robot keeps its limits; 1 is as bent as the worm.
+        unscaled: angle of a cycle if the robot could bend like the worm [rad].
         clearance: smallest gap of the robot to itself [m].
     """
 
@@ -64,21 +65,24 @@ class WormGait:
     cycle: Cycle
     likeness: float
     factor: float
+    unscaled: float
     clearance: float
 
 
 def deepest_cycle(trials: Sequence[Kymograph], waves: TwoWaves) -> Cycle:
-    """Find the cycle of the turning wave, in either direction, over which bodies bend deepest.
+    """Find the cycle of the forward wave, in either direction, over which bodies bend deepest.
+
+    The forward wave is the clock: the longer one may be little more than a bend to one side.
 
     Args:
         trials: the recordings.
         waves: fitted to them.
 
     Raises:
-        BadInputError: the turning wave never makes a whole cycle.
+        BadInputError: the forward wave never makes a whole cycle.
     """
     best: Cycle | None = None
-    for index, (trial, wave) in enumerate(zip(trials, waves.turning)):
+    for index, (trial, wave) in enumerate(zip(trials, waves.forward)):
         phase = wave.phase
         most = int(LONGEST * trial.fps)
         bends = np.concatenate([[0.0], np.cumsum(np.abs(deepest_bend(trial.angles)))])
@@ -91,26 +95,46 @@ def deepest_cycle(trials: Sequence[Kymograph], waves: TwoWaves) -> Cycle:
             if best is None or bend > best.bend:
                 best = Cycle(index, trial.first + start, trial.first + stop, bend)
     if best is None:
-        expected = 'a whole cycle of the turning wave: more frames around the turn'
+        expected = 'a whole cycle of the forward wave: more frames around the turn'
         raise BadInputError('recording', 'none', expected)
     return best
 
 
-def worm_gait(
-    trials: Sequence[Kymograph], waves: TwoWaves, robot: Robot, name: str, harmonics: int = 1
-) -> WormGait:
-    """Turn the deepest cycle of a recording into a gait.
+def turn_waves(trials: Sequence[Kymograph]) -> TwoWaves:
+    """Fit the template to the deepest turn, told from the straight body.
 
-    The robot takes on the worm's curvature per body length. The gait phase is that of the turning
-    wave; a wave that travels from head to tail gets a negative spatial frequency. A recorded
-    cycle does not end as it began: f_1, f_2 and f_3 as Fourier series close it, fitted to the
-    joint angles of both waves by least squares; a mean and one harmonic each are as rich as
-    eq:prescribe_amp. Where the robot cannot bend so far, both amplitudes are scaled down (own
-    derivation).
+    A turn is too short for its mean posture to be the animal's rest posture: it is the bend to
+    one side that turns the body, and a gait needs it (own derivation).
+
+    Args:
+        trials: the recordings, all with equal N; without a turn all their frames count.
+
+    Returns:
+        Waves of the turn's k_t and k_f in all frames.
+    """
+    turns = [(turn, trial) for trial in trials for turn in find_turns(trial)]
+    chosen = list(trials)
+    if turns:
+        turn, trial = max(turns, key=lambda pair: abs(pair[0].bend))
+        chosen = [trial.cut(turn.start, turn.stop)]
+    pair = best_pair(sum(part.angles.T @ part.angles for part in chosen))
+    angles = [trial.angles for trial in trials]
+    return fit_two_waves(angles, angles, trials[0].fps, pair)
+
+
+def worm_gait(
+    trials: Sequence[Kymograph], robot: Robot, name: str, harmonics: int = 1
+) -> WormGait:
+    """Turn the deepest bent cycle of recordings into a gait.
+
+    The robot takes on the worm's curvature per body length. A wave that travels from head to tail
+    gets a negative spatial frequency. A recorded cycle does not end as it began: f_1, f_2 and f_3
+    as Fourier series close it, fitted to the joint angles of both waves by least squares; a mean
+    and one harmonic each are as rich as eq:prescribe_amp. Where the robot cannot bend so far,
+    both amplitudes are scaled down (own derivation).
 
     Args:
         trials: the recordings, all with equal N.
-        waves: fitted to them.
         robot: whose limits are kept.
         name: of the gait.
         harmonics: of each series.
@@ -119,18 +143,19 @@ def worm_gait(
         BadInputError: there is no cycle, the robot has too few joints for the waves, or the gait
             does not turn it.
     """
+    if harmonics < 1:
+        raise BadInputError('harmonics', harmonics, 'at least 1')
+    waves = turn_waves(trials)
     if waves.k_f > 0.5 * robot.n_yaw:
         expected = f'at most {0.5 * robot.n_yaw:g}, half the yaw joints of {robot.name}'
         raise BadInputError('k_f', waves.k_f, expected)
-    if harmonics < 1:
-        raise BadInputError('harmonics', harmonics, 'at least 1')
     cycle = deepest_cycle(trials, waves)
     trial = trials[cycle.trial]
     frames = slice(cycle.start - trial.first, cycle.stop - trial.first)
     pair = (waves.turning[cycle.trial], waves.forward[cycle.trial])
     turning, forward = (_on_robot(wave, frames, trial.n_positions, robot.n_yaw) for wave in pair)
     k_t, k_f = waves.k_t, waves.k_f
-    phase = np.unwrap(np.angle(turning))
+    phase = np.unwrap(np.angle(forward))
     if phase[-1] < phase[0]:  # A sin(tau + a) = -A sin(-tau - a)
         turning, forward, phase = -turning.conj(), -forward.conj(), np.pi - phase
         k_t, k_f = -k_t, -k_f
@@ -141,7 +166,8 @@ def worm_gait(
     text = f'Turn of a worm: {trial.name}, frames {cycle.start} to {cycle.stop - 1}'
     entry = make_library_gait(name, text, scaled, robot)
     clearance = problem.clearance(problem.path(entry.gait))
-    return WormGait(entry, cycle, likeness, factor, clearance)
+    unscaled = abs(problem.turn(problem.path(gait)))
+    return WormGait(entry, cycle, likeness, factor, unscaled, clearance)
 
 
 def _on_robot(wave: Wave, frames: slice, positions: int, joints: int) -> Complex:

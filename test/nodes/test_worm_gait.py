@@ -12,9 +12,7 @@ from turner import ROBOT, Turner
 
 from omega_turn_ros.gaits.library import gait_to_mapping
 from omega_turn_ros.gaits.two_wave import two_wave_angles
-from omega_turn_ros.worm.components import centred
 from omega_turn_ros.worm.kymograph import Kymograph
-from omega_turn_ros.worm.template import fit_two_waves
 from omega_turn_ros.worm.to_gait import worm_gait
 
 
@@ -26,8 +24,7 @@ def test_a_worms_gait_turns_the_robot_by_the_angle_asked_for(
     trial = Kymograph(
         'made', two_wave_angles(forward, tau + 1.0, turning, tau, 1.5, 1.0, 24), 32.0
     )
-    waves = fit_two_waves([centred(trial)], [trial.angles], trial.fps)
-    made = worm_gait([trial], waves, ROBOT, 'made')
+    made = worm_gait([trial], ROBOT, 'made')
     assert made.entry.gait.k_f < 0.0 and made.entry.gait.k_t < 0.0
     path = tmp_path / 'made.yaml'
     path.write_text(yaml.safe_dump(gait_to_mapping(made.entry)))

@@ -83,7 +83,7 @@ def deepest_cycle(trials: Sequence[Kymograph], waves: TwoWaves) -> Cycle:
     """
     best: Cycle | None = None
     for index, (trial, wave) in enumerate(zip(trials, waves.forward)):
-        phase = wave.phase
+        phase = _clock(wave.signal)
         most = int(LONGEST * trial.fps)
         bends = np.concatenate([[0.0], np.cumsum(np.abs(deepest_bend(trial.angles)))])
         for start in range(len(phase)):
@@ -155,7 +155,7 @@ def worm_gait(
     pair = (waves.turning[cycle.trial], waves.forward[cycle.trial])
     turning, forward = (_on_robot(wave, frames, trial.n_positions, robot.n_yaw) for wave in pair)
     k_t, k_f = waves.k_t, waves.k_f
-    phase = np.unwrap(np.angle(forward))
+    phase = _clock(forward)
     if phase[-1] < phase[0]:  # A sin(tau + a) = -A sin(-tau - a)
         turning, forward, phase = -turning.conj(), -forward.conj(), np.pi - phase
         k_t, k_f = -k_t, -k_f
@@ -168,6 +168,12 @@ def worm_gait(
     clearance = problem.clearance(problem.path(entry.gait))
     unscaled = abs(problem.turn(problem.path(gait)))
     return WormGait(entry, cycle, likeness, factor, unscaled, clearance)
+
+
+def _clock(signal: Complex) -> Array:
+    """Phase of a wave [rad], continuous where its amplitude passes through zero to below."""
+    phase: Array = 0.5 * np.unwrap(2.0 * np.angle(signal))
+    return phase
 
 
 def _on_robot(wave: Wave, frames: slice, positions: int, joints: int) -> Complex:
@@ -199,22 +205,24 @@ def _closed_gait(
     terms = 2 * harmonics + 1
 
     def angles(x: Array) -> Array:
-        f_1, f_2, f_3 = (tuple(part) for part in np.split(x, 3))
-        amplitude_f, tau_f, amplitude_t, tau_t = fourier_waves(tau, f_1, f_2, f_3)
+        f_1, f_2, f_3 = (tuple(part) for part in np.split(x[1:], 3))
+        amplitude_f, tau_f, amplitude_t, tau_t = fourier_waves(tau + x[0], f_1, f_2, f_3)
         return two_wave_angles(amplitude_f, tau_f, amplitude_t, tau_t, k_f, k_t, joints)
 
     def off(x: Array) -> Array:
         result: Array = (angles(x) - target).ravel()
         return result
 
+    ahead = float(np.angle(np.sum(first * np.exp(-1j * tau))))  # turning wave before the clock
     fits = []
     for k in range(STARTS):
-        guess = np.zeros(3 * terms)
-        guess[[0, terms]] = np.abs(second).mean(), np.abs(first).mean()
-        guess[2 * terms] = 2.0 * np.pi * k / STARTS
+        guess = np.zeros(1 + 3 * terms)
+        guess[0] = ahead
+        guess[[1, 1 + terms]] = np.abs(second).mean(), np.abs(first).mean()
+        guess[1 + 2 * terms] = 2.0 * np.pi * k / STARTS
         fits.append(least_squares(off, guess, max_nfev=SCREENING))
     best = least_squares(off, min(fits, key=lambda fit: fit.cost).x, max_nfev=FITTING)
-    series = [[float(c) for c in part] for part in np.split(best.x, 3)]
+    series = [[float(c) for c in part] for part in np.split(best.x[1:], 3)]
     series[2][0] = math.remainder(series[2][0], math.tau)
     gait = FourierGait(k_f, k_t, *(tuple(part) for part in series))
     return gait, 1.0 - 2.0 * best.cost / float((target**2).sum())

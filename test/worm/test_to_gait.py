@@ -58,7 +58,7 @@ def test_a_periodic_turn_comes_back_in_curvature_and_direction(robot: Robot, sig
 
 def test_the_gait_keeps_every_limit_of_the_robot(deep: WormGait, robot: Robot) -> None:
     path = deep.entry.gait.sampled(robot.n_yaw, 5000)
-    assert np.abs(path).max() <= robot.position_limit
+    assert np.abs(path).max() <= robot.position_limit + 1e-9
     chain = PlanarChain.of_robot(robot)
     assert self_clearance(chain, robot.module_width, path).min() >= 0.0
     assert deep.factor < 1.0
@@ -86,7 +86,7 @@ def test_harmonics_follow_an_uneven_worm_more_closely(robot: Robot) -> None:
     tau = truth.phases[0]
     uneven = replace(truth, phases=(tau, tau + 1.0 + 0.4 * np.sin(2.0 * tau)))
     one, two = (made(uneven, robot, harmonics=n).likeness for n in (1, 2))
-    assert one < 0.98 < two
+    assert one + 0.01 < two
 
 
 def test_the_deepest_bent_cycle_is_taken() -> None:

@@ -141,8 +141,8 @@ def test_a_gait_of_the_worm_turns_a_robot(
         angle['quasi_static'], abs=1e-3
     )
     assert entry.name == 'mine' and entry.robot == 'small' and entry.theta_max <= 1.3
-    # so short a robot slips more than theory says; the physics is tested elsewhere
-    assert angle['pybullet'] == pytest.approx(angle['quasi_static'], rel=0.5)
+    # a few degrees, counter-clockwise in both; small turns differ most between them
+    assert 0.0 < angle['pybullet'] < angle['quasi_static'] + 5.0
     assert f'mine: {angle["quasi_static"]:.1f} deg per cycle' in capsys.readouterr().out
     assert gait['likeness'] > 0.95 and gait['clearance_m'] >= 0.0
     assert gait['cycle']['frames'][1] - gait['cycle']['frames'][0] == pytest.approx(54, abs=8)

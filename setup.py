@@ -18,9 +18,11 @@ setup(
         'omega_turn_ros.gaits',
         'omega_turn_ros.mechanics',
         'omega_turn_ros.nodes',
+        'omega_turn_ros.worm',
         'omega_turn_sim_bridge',
         'omega_turn_lab',
         'omega_turn_lab.studies',
+        'omega_turn_lab.worm',
     ],
     package_dir={
         'omega_turn_ros.config': 'config',

@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 from omega_turn_lab.studies import NAMES as STUDIES
+from omega_turn_lab.worm.arguments import add_worm
 from omega_turn_ros import __version__
 from omega_turn_ros.errors import OmegaTurnError
 
@@ -37,6 +38,7 @@ def _parser() -> argparse.ArgumentParser:
     _add_turn(commands.add_parser('turn', help='command nodes that already run'))
     _add_design(commands.add_parser('design', help='design gaits for a robot'))
     _add_reproduce(commands.add_parser('reproduce', help="redo the paper's tables and figures"))
+    add_worm(commands.add_parser('worm', help='waves and gaits from recordings of worms'))
     return parser
 
 

@@ -1,0 +1,1 @@
+"""`omega_turn worm`: recordings of worms on the command line."""

@@ -113,7 +113,7 @@ def _played(robot: Robot, entry: LibraryGait) -> float:
     """Angle of one cycle in PyBullet [rad]."""
     from omega_turn_lab.physics_trial import play_cycle
 
-    return play_cycle(robot, entry.gait).angle
+    return play_cycle(robot, entry.waves).angle
 
 
 def _write_gait(entry: LibraryGait, out: Path) -> Path:

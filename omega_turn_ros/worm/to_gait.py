@@ -165,7 +165,7 @@ def worm_gait(
     scaled = gait.scaled(factor)
     text = f'Turn of a worm: {trial.name}, frames {cycle.start} to {cycle.stop - 1}'
     entry = make_library_gait(name, text, scaled, robot)
-    clearance = problem.clearance(problem.path(entry.gait))
+    clearance = problem.clearance(problem.path(entry.waves))
     unscaled = abs(problem.turn(problem.path(gait)))
     return WormGait(entry, cycle, likeness, factor, unscaled, clearance)
 

@@ -34,7 +34,7 @@ class AdmittanceConfig:
     mass: tuple[float, float] = (1.0, 1.0)
     damping: tuple[float, float] = (8.0, 8.0)
     stiffness: tuple[float, float] = (8.0, 8.0)
-    offset_limit: float = 0.35
+    offset_limit: float = 0.5
     rate_limit: float = 1.0
 
     def __post_init__(self) -> None:

@@ -32,9 +32,10 @@ class ComplianceConfig:
     Attributes:
         k_f: spatial frequency of the forward wave.
         k_t: spatial frequency of the turning wave.
-        torque_scale: factors on J tau_ext of (forward, turning) wave. (1, 1) is the paper's law in
-            N m: the wave yields to what pushes it. A negative factor makes it push harder against
-            what holds it; 0 keeps a wave as it is.
+        torque_scale: factors on J tau_ext of (forward, turning) wave. A negative factor makes a
+            wave push harder against what holds it, up to its bound: among pegs that is what pays
+            (`omega_turn reproduce pegboard`). (1, 1) is the paper's law read straight, in N m:
+            the wave yields to what pushes it. 0 keeps a wave as it is.
         relax_rate: offsets return to 0 at this rate without efforts or waves [rad/s].
         law: constants of the admittance law.
         torque: how efforts become external torques.
@@ -42,7 +43,7 @@ class ComplianceConfig:
 
     k_f: float = 1.5
     k_t: float = 1.0
-    torque_scale: tuple[float, float] = (1.0, 1.0)
+    torque_scale: tuple[float, float] = (-8.0, -8.0)
     relax_rate: float = 0.5
     law: AdmittanceConfig = field(default_factory=AdmittanceConfig)
     torque: TorqueConfig = field(default_factory=TorqueConfig)

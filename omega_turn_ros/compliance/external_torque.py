@@ -41,7 +41,7 @@ class TorqueConfig:
     effort_sign: int = 1
     friction: float = 0.5
     filter_time: float = 0.1
-    dead_band: float = 0.1
+    dead_band: float = 1.0
 
     def __post_init__(self) -> None:
         """Refuse settings without meaning."""

@@ -42,15 +42,15 @@ ADMITTANCE_PARAMETERS = (
     Spec('mass', [1.0, 1.0], 'M of (forward, turning) wave.', 'N m s^2/rad', 1e-4, 1e6),
     Spec('damping', [8.0, 8.0], 'B of (forward, turning) wave.', 'N m s/rad', 0.0, 1e6),
     Spec('stiffness', [8.0, 8.0], 'K of (forward, turning) wave.', 'N m/rad', 1e-3, 1e8),
-    Spec('offset_limit', 0.35, 'Largest amplitude offset.', 'rad', 1e-3, 1.5),
+    Spec('offset_limit', 0.5, 'Largest amplitude offset.', 'rad', 1e-3, 1.5),
     Spec('rate_limit', 1.0, 'Largest rate of the offsets.', 'rad/s', 1e-3, 10.0),
     Spec(
         'relax_rate', 0.5, 'Offsets return to 0 at this rate without efforts.', 'rad/s', 0.01, 10
     ),
     Spec(
         'torque_scale',
-        [1.0, 1.0],
-        'Factors on J tau_ext of (forward, turning) wave: > 0 yields, < 0 pushes back, 0 keeps.',
+        [-8.0, -8.0],
+        'Factors on J tau_ext of (forward, turning) wave: < 0 pushes back, > 0 yields, 0 keeps.',
         '',
         -100.0,
         100.0,
@@ -58,7 +58,7 @@ ADMITTANCE_PARAMETERS = (
     Spec('effort_sign', 0, "+1/-1: effort > 0 drives to + / - angles; 0: robot's.", '', -1, 1),
     Spec('friction', 0.5, 'Friction of open ground; its torque is subtracted.', '', 0.0, 5.0),
     Spec('filter_time', 0.1, 'Low-pass time constant of the external torque.', 's', 0.0, 10.0),
-    Spec('dead_band', 0.1, 'External torques up to this count as 0.', 'N m', 0.0, 100.0),
+    Spec('dead_band', 1.0, 'External torques up to this count as 0.', 'N m', 0.0, 100.0),
     Spec('effort_timeout', 0.2, 'Efforts older than this: offsets relax.', 's', 0.02, 60.0),
     Spec('ignore_unknown_joints', False, 'Accept joint_states with joints of others.'),
     Spec(

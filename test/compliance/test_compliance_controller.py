@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -21,6 +23,7 @@ DT = 0.01
 PHASES = (0.4, 1.1)
 STILL = np.zeros(8)
 WIDE = AdmittanceConfig(offset_limit=10.0, rate_limit=10.0)
+YIELDING = ComplianceConfig(torque_scale=(1.0, 1.0), law=WIDE, torque=TorqueConfig(dead_band=0.1))
 
 
 @pytest.fixture(scope='module')
@@ -41,7 +44,7 @@ def held(
 def test_lasting_push_offsets_the_amplitudes_by_projected_torque_over_stiffness(
     chain: PlanarChain,
 ) -> None:
-    config = ComplianceConfig(law=WIDE, torque=TorqueConfig(dead_band=0.0))
+    config = replace(YIELDING, torque=TorqueConfig(dead_band=0.0))
     push = np.random.default_rng(2).normal(size=8)
     state = held(ComplianceController(chain, config), -push)
     force = wave_jacobian(*PHASES, config.k_f, config.k_t, 8) @ push
@@ -50,11 +53,14 @@ def test_lasting_push_offsets_the_amplitudes_by_projected_torque_over_stiffness(
 
 
 @pytest.mark.parametrize('wave', [0, 1])
-def test_push_along_a_wave_makes_that_wave_larger(chain: PlanarChain, wave: int) -> None:
-    controller = ComplianceController(chain, ComplianceConfig())
+def test_push_along_a_wave_makes_it_larger_if_it_yields_and_smaller_if_it_pushes(
+    chain: PlanarChain, wave: int
+) -> None:
     shape = wave_jacobian(*PHASES, 1.5, 1.0, 8)[wave]
-    assert held(controller, -2.0 * shape, 2.0).admittance.offset[wave] > 0.01
-    assert held(controller, 2.0 * shape, 2.0).admittance.offset[wave] < -0.01
+    for config, sign in ((YIELDING, 1.0), (ComplianceConfig(), -1.0)):
+        controller = ComplianceController(chain, config)
+        assert sign * held(controller, -2.0 * shape, 2.0).admittance.offset[wave] > 0.01
+        assert sign * held(controller, 2.0 * shape, 2.0).admittance.offset[wave] < -0.01
 
 
 @pytest.mark.parametrize('scale', [(0.0, 0.0), (0.5, 0.5), (0.5, -1.0)])
@@ -62,8 +68,8 @@ def test_torque_scale_scales_the_yielding_of_each_wave(
     chain: PlanarChain, scale: tuple[float, float]
 ) -> None:
     push = -np.linspace(0.5, 2.0, 8)
-    full = held(ComplianceController(chain, ComplianceConfig(law=WIDE)), push)
-    less = held(ComplianceController(chain, ComplianceConfig(law=WIDE, torque_scale=scale)), push)
+    full = held(ComplianceController(chain, YIELDING), push)
+    less = held(ComplianceController(chain, replace(YIELDING, torque_scale=scale)), push)
     np.testing.assert_allclose(
         less.admittance.offset, np.multiply(scale, full.admittance.offset), atol=1e-12
     )
@@ -72,8 +78,8 @@ def test_torque_scale_scales_the_yielding_of_each_wave(
 def free_gait(chain: PlanarChain, compensated: bool) -> np.ndarray:
     """Largest offsets over one omega cycle with the efforts that open ground asks for."""
     gait = load_gait('omega')
-    torque = TorqueConfig(friction=0.5 if compensated else 0.0)
-    controller = ComplianceController(chain, ComplianceConfig(torque=torque))
+    torque = TorqueConfig(friction=0.5 if compensated else 0.0, dead_band=0.1)
+    controller = ComplianceController(chain, replace(YIELDING, torque=torque))
     state, largest = controller.initial_state(), np.zeros(2)
     rate = 2.0 * np.pi / 10.0
     phases = gait.calibration.start_phase + 0.05 * rate * np.arange(200)

@@ -12,14 +12,16 @@ import pytest
 from omega_turn_lab.obstacle_trial import ObstacleTrial, Result
 from omega_turn_ros.compliance.admittance import AdmittanceConfig
 from omega_turn_ros.compliance.controller import ComplianceConfig
+from omega_turn_ros.compliance.external_torque import TorqueConfig
 from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.gaits.library import load_gait
 from omega_turn_ros.robot import load_robot
 from omega_turn_sim_bridge.terrain_config import TerrainConfig
 
 CLOSE = TerrainConfig('pegboard', spacing_bl=0.2, extent_bl=0.8)
-YIELDING = ComplianceConfig(law=AdmittanceConfig(offset_limit=0.4))
-PUSHING = replace(YIELDING, torque_scale=(-0.5, -0.5))
+BOUND = AdmittanceConfig(offset_limit=0.4)
+YIELDING = ComplianceConfig(torque_scale=(1.0, 1.0), law=BOUND, torque=TorqueConfig(dead_band=0.1))
+PUSHING = ComplianceConfig()
 OPEN = ObstacleTrial(
     load_robot('limbless16'), load_gait('omega').gait, CLOSE, seed=1, cycles=1, period=6.0
 )
@@ -75,8 +77,9 @@ def test_result_is_plain_json_with_an_angle_for_each_cycle(
 def test_open_ground_leaves_a_compliant_turn_as_it_is() -> None:
     free = replace(OPEN, terrain=TerrainConfig())
     open_loop = free.run()
-    compliant = replace(free, compliance=YIELDING).run()
-    assert compliant['angle_deg'] == pytest.approx(open_loop['angle_deg'], rel=0.03)
+    for law in (YIELDING, PUSHING):
+        compliant = replace(free, compliance=law).run()
+        assert compliant['angle_deg'] == pytest.approx(open_loop['angle_deg'], rel=0.03)
     assert open_loop['angle_deg'] > 80.0
 
 

@@ -23,6 +23,9 @@ PUSH, DEAD_BAND, STIFFNESS, LIMIT = 1.7, 0.1, 8.0, 0.35  # [N m, N m, N m/rad, r
 TAU_FORWARD = 0.5 * math.pi - 2.0 * math.pi * 1.5 / 8  # joint_1 on the crest of the forward wave
 TAU_TURNING = -2.0 * math.pi * 1.0 / 8  # and on the node of the turning wave
 
+# The law of the paper read straight; the node's own pushes back.
+YIELDING = {'torque_scale': [1.0, 1.0], 'dead_band': DEAD_BAND, 'offset_limit': LIMIT}
+
 
 class Compliant:
     """An admittance node that is told states and phases one instant at a time.
@@ -35,7 +38,7 @@ class Compliant:
 
     def __init__(self, graph: Graph, below: str = '', **parameters: Any) -> None:
         self.graph, self.user = graph, User(graph, below)
-        graph.add(AdmittanceNode, below, **{'effort_timeout': 60.0, **parameters})
+        graph.add(AdmittanceNode, below, **{'effort_timeout': 60.0, **YIELDING, **parameters})
         self.heard: list[JointState] = []
         self.user.node.create_subscription(JointState, 'wave_amplitudes', self._check, 10_000)
         self.efforts = np.zeros(ROBOT.n_joints)
@@ -174,7 +177,7 @@ def test_bad_efforts_are_dropped_whole_and_counted(
 
 def test_a_robot_without_efforts_still_turns(graph: Graph) -> None:
     turner = Turner(graph, use_compliance=True, lock_step=False, clock=True)
-    graph.add(AdmittanceNode)
+    graph.add(AdmittanceNode, **YIELDING)
     turner.robot.spoil['joint_states'] = BAD_EFFORTS['empty']
     turner.start_turn(0.5)
     turner.wait_for_end()

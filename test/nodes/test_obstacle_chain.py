@@ -11,7 +11,6 @@ from nav_msgs.msg import Odometry
 from ros_graph import Graph, User
 
 from omega_turn_lab.obstacle_trial import ObstacleTrial
-from omega_turn_ros.compliance.admittance import AdmittanceConfig
 from omega_turn_ros.compliance.controller import ComplianceConfig
 from omega_turn_ros.gaits.library import load_gait
 from omega_turn_ros.nodes.admittance_node import AdmittanceNode
@@ -21,8 +20,7 @@ from omega_turn_ros.robot import load_robot
 from omega_turn_sim_bridge.bridge_node import PyBulletBridge
 from omega_turn_sim_bridge.terrain_config import load_terrain
 
-SPACING, SEED, PERIOD, LIMIT = 0.4, 3, 6.0, 0.35
-PUSH = (-3.0, -3.0)
+SPACING, SEED, PERIOD = 0.4, 3, 6.0
 PATIENCE = 300.0  # [s] for what takes 15 s on an idle core
 OMEGA = load_gait('omega')
 
@@ -32,13 +30,12 @@ OMEGA = load_gait('omega')
 def test_nodes_in_lock_step_turn_as_far_as_the_trial_without_ros(
     graph: Graph, compliant: bool
 ) -> None:
-    law = ComplianceConfig(torque_scale=PUSH, law=AdmittanceConfig(offset_limit=LIMIT))
     trial = ObstacleTrial(
         load_robot('limbless16'),
         OMEGA.gait,
         replace(load_terrain('pegboard'), spacing_bl=SPACING),
         SEED,
-        law if compliant else None,
+        ComplianceConfig() if compliant else None,
         cycles=1,
         period=PERIOD,
     )
@@ -52,8 +49,7 @@ def _turned(graph: Graph, compliant: bool) -> float:
     graph.add(PyBulletBridge, lock_step=True, start_paused=True, lock_step_timeout=60.0, **ground)
     odom: list[Odometry] = user.hear(Odometry, 'odom')
     if compliant:
-        law = {'torque_scale': list(PUSH), 'offset_limit': LIMIT}
-        graph.add(AdmittanceNode, lock_step=True, **law)
+        graph.add(AdmittanceNode, lock_step=True)
     graph.add(
         GaitNode, lock_step=True, period=PERIOD, use_compliance=compliant, heading_feedback='none'
     )

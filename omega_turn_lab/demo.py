@@ -26,6 +26,7 @@ from omega_turn_lab.live import NodeError, Observer, Stack, wait_until
 from omega_turn_lab.pictures import draw_turn
 from omega_turn_lab.recording import BagRecorder
 from omega_turn_lab.run_record import RunRecord
+from omega_turn_lab.uneven import pitch_effort_on
 from omega_turn_ros import __version__
 from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.gaits.library import load_gait
@@ -168,6 +169,7 @@ def _play(stack: Stack, options: DemoOptions, commanded: float) -> Outcome:
         friction=options.friction,
         terrain=options.terrain,
         peg_spacing=options.spacing or 0.0,
+        pitch_effort_limit=pitch_effort_on(options.ground(), load_gait(options.gait).gait),
         seed=options.seed,
         gui=options.gui,
     )

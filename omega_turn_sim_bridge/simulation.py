@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from omega_turn_ros.errors import BadInputError, SimulationError
 from omega_turn_ros.robot import STANDARD_GRAVITY, Robot
+from omega_turn_sim_bridge.body_frame import tilted_heading
 from omega_turn_sim_bridge.engine import pybullet
 from omega_turn_sim_bridge.granular import GranularGround
 from omega_turn_sim_bridge.robot import ride_height, urdf_from_robot
@@ -132,6 +133,7 @@ class Simulation:
         self._velocity_limit = self.config.velocity_limit or robot.velocity_limit
         self._joints = list(range(robot.n_joints))
         self._yaw = robot.yaw_indices
+        self._is_yaw = np.array([axis == 'yaw' for axis in robot.joint_axes])
         self._mass_fractions = robot.body_masses / robot.body_masses.sum()
         self._behind = self._fraction_behind_joints()
         self._steps = 0
@@ -430,9 +432,15 @@ class Simulation:
         links = pybullet.getLinkStates(
             self._body, self._joints, computeLinkVelocity=1, physicsClientId=client
         )
-        yaw = math.atan2(2.0 * (qw * qz + qx * qy), 1.0 - 2.0 * (qy * qy + qz * qz))
+        bend = float(self._behind @ positions[self._yaw])
+        if self._ground.top > 0.0:
+            turns = np.array([(qx, qy, qz, qw)] + [s[LINK_COM_TURN] for s in links])
+            bends = np.concatenate([[0.0], np.cumsum(np.where(self._is_yaw, positions, 0.0))])
+            yaw = tilted_heading(turns, bends - bend, self._mass_fractions) - bend
+        else:
+            yaw = math.atan2(2.0 * (qw * qz + qx * qy), 1.0 - 2.0 * (qy * qy + qz * qz))
         self._base_yaw += math.remainder(yaw - self._base_yaw, math.tau)
-        heading = self._base_yaw + float(self._behind @ positions[self._yaw])
+        heading = self._base_yaw + bend
         rate = base_rate[2] + float(self._behind @ velocities[self._yaw])
         centres = np.array([base] + [s[LINK_COM_POSITION] for s in links])
         rates = np.array([base_velocity] + [s[LINK_COM_VELOCITY] for s in links])

@@ -27,7 +27,9 @@ def table_rows(heading: str) -> dict[str, list[str]]:
 
 def test_parameter_tables_are_those_of_the_code() -> None:
     reference = pytest.importorskip('omega_turn_lab.reference')
-    assert reference.with_tables(README) == README, 'renew: python -m omega_turn_lab.reference README.md'
+    assert reference.with_tables(README) == README, (
+        'renew: python -m omega_turn_lab.reference README.md'
+    )
     for node, specs in reference.NODES.items():
         assert all(f'| `{spec.name}` |' in README for spec in specs), node
 

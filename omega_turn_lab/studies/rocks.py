@@ -23,6 +23,7 @@ from omega_turn_lab.studies.rows import Row, params_of
 from omega_turn_lab.studies.spread import spread_of
 from omega_turn_lab.studies.study import Outcome, Plan, Study
 from omega_turn_lab.studies.tasks import DesignTask, Result
+from omega_turn_lab.uneven import pitch_effort_on
 from omega_turn_ros.compliance.controller import ComplianceConfig
 from omega_turn_ros.gaits.library import load_gait
 from omega_turn_sim_bridge.terrain_config import TerrainConfig, load_terrain
@@ -32,7 +33,6 @@ if TYPE_CHECKING:
 
 NAME = 'rocks'
 PILES = 20
-FOLLOWING = 0.6  # [N m] of pitch motors; 5 links of the robot weigh as much on their joint
 PLANAR = {
     'omega turn': 1.0,
     'compliant omega turn': 1.0,
@@ -63,8 +63,9 @@ def _hard(outcome: Outcome, gait: str) -> ObstacleTrial:
 
 
 def _on_rocks(outcome: Outcome, gait: str, seed: int, terrain: TerrainConfig) -> ObstacleTrial:
-    effort = 0.0 if gait == FREQUENCY else FOLLOWING
-    return replace(_hard(outcome, gait), terrain=terrain, seed=seed, pitch_effort=effort)
+    hard = _hard(outcome, gait)
+    effort = pitch_effort_on(terrain, hard.gait)
+    return replace(hard, terrain=terrain, seed=seed, pitch_effort=effort)
 
 
 def _pile(outcome: Outcome, gait: str) -> list[ObstacleTrial]:

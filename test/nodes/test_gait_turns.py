@@ -257,3 +257,15 @@ def test_a_turn_goes_on_at_the_same_pace_with_a_robot_that_is_heard_best_effort(
     turner.start_turn(0.7)
     turner.wait_for_end()
     assert other.posture == pytest.approx(turner.watch.newest, abs=1e-3)
+
+
+def test_cycles_that_get_nowhere_with_motors_straining_are_reported_as_a_jam(
+    make_turner: MakeTurner,
+) -> None:
+    turner = make_turner(heading_feedback='odom')  # whose heading stays as it is
+    turner.robot.efforts[4] = -ROBOT.effort_limit
+    turner.start_turn(1.5)
+    turner.user.wait_for_problem('gait_node', 'jammed')
+    assert int(turner.user.fact('gait_node', 'cycles in a jam')) >= 1
+    turner.user.turn(0.0)
+    turner.wait_for_end()

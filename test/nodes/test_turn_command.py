@@ -40,9 +40,9 @@ class Command:
     def wait(self, patience: float = 60.0) -> tuple[int, str]:
         """Let the graph run until it ends; return its exit code and its last line."""
         self._graph.spin_until(lambda: self.process.poll() is not None, 'the command', patience)
-        out, err = self.process.communicate()
-        assert 'Traceback' not in err
-        return self.process.returncode, (out or err).splitlines()[-1]
+        out, self.err = self.process.communicate()
+        assert 'Traceback' not in self.err
+        return self.process.returncode, (out or self.err).splitlines()[-1]
 
 
 @pytest.fixture
@@ -106,6 +106,14 @@ def test_corrections_used_up_are_an_error_that_says_what_was_left(
     make_turner(heading_feedback='odom', max_corrections=0)
     code, said = start('--deg', '20').wait(120.0)
     assert code == 1 and 'error: stopped with 20.0 deg left' in said
+
+
+def test_a_jam_is_told(make_turner: MakeTurner, start: Callable[..., Command]) -> None:
+    turner = make_turner(heading_feedback='odom', max_corrections=2)
+    turner.robot.efforts[0] = 5.0
+    command = start('--deg', '90')
+    code, _ = command.wait(120.0)
+    assert code == 1 and 'the robot was jammed' in command.err
 
 
 @pytest.mark.parametrize('angle', [-0.5, 0.0])

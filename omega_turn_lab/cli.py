@@ -61,6 +61,9 @@ def _add_turn(parser: argparse.ArgumentParser) -> None:
         '--domain-id', type=_domain, default=None, help='default: ROS_DOMAIN_ID or 0'
     )
     parser.add_argument('--timeout', type=_seconds, default=10.0, help='for the gait node [s]')
+    parser.add_argument(
+        '--ros-args', nargs=argparse.REMAINDER, default=[], help='as of any node; goes last'
+    )
     parser.set_defaults(run=_run_turn)
 
 
@@ -157,7 +160,9 @@ def _run_demo(options: argparse.Namespace) -> int:
 def _run_turn(options: argparse.Namespace) -> int:
     from omega_turn_lab.turn import run_turn
 
-    return run_turn(options.deg, options.namespace, options.domain_id, options.timeout)
+    return run_turn(
+        options.deg, options.namespace, options.domain_id, options.timeout, options.ros_args
+    )
 
 
 def _run_design(options: argparse.Namespace) -> int:

@@ -10,6 +10,8 @@ from sensor_msgs.msg import JointState
 from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.nodes.joint_message import JointReader
 
+STATES_STALE = 'joint_states stale'  # a problem in the gait node's diagnostics
+
 
 def heading_of(message: Odometry) -> float:
     """Heading of the pose [rad], in -pi..pi.

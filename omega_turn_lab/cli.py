@@ -12,19 +12,26 @@ from omega_turn_lab.studies import NAMES as STUDIES
 from omega_turn_ros import __version__
 from omega_turn_ros.errors import OmegaTurnError
 
+INTERRUPTED = 130  # exit code
+
 
 def main(arguments: list[str] | None = None) -> int:
     """Run `omega_turn`; return the exit code: 0 done, 1 failed, 2 bad input, 130 interrupted."""
     options = _parser().parse_args(arguments)
     signal.signal(signal.SIGTERM, signal.default_int_handler)  # ends as Ctrl-C does
     try:
-        return int(options.run(options))
+        code = int(options.run(options))
     except KeyboardInterrupt:
         print('interrupted', file=sys.stderr)
-        return 130
+        code = INTERRUPTED
     except OmegaTurnError as error:
         print(f'error: {error}', file=sys.stderr)
-        return 2 if isinstance(error, ValueError) else 1
+        code = 2 if isinstance(error, ValueError) else 1
+    if code == INTERRUPTED:
+        # Terminals and launch may signal twice; the second must not break into the exit.
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, signal.SIG_IGN)
+    return code
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -55,9 +55,9 @@ def run_turn(
         client = TurnClient(context, namespace=namespace)
         return _turn(client, deg, timeout, interrupted)
     finally:
+        context.try_shutdown()
         for number, handler in old.items():
             signal.signal(number, handler)
-        context.try_shutdown()
 
 
 def _turn(client: TurnClient, deg: float, timeout: float, interrupted: threading.Event) -> int:
@@ -71,7 +71,7 @@ def _turn(client: TurnClient, deg: float, timeout: float, interrupted: threading
             return _end(executor, client, timeout, 0)
         client.send(math.radians(deg))
         _accompany(executor, client, timeout, interrupted)
-        if not client.over:
+        if interrupted.is_set() and (client.gone or not client.over):
             return _end(executor, client, min(timeout, LAST_WORD), 130)
         if abs(math.degrees(client.left)) > MEANT:
             _hear_out(executor, client)

@@ -22,7 +22,7 @@ from omega_turn_ros.nodes.runner import ENDINGS, init_ros
 # [deg] left at an end that was meant: twice the gait node's usual heading_tolerance.
 MEANT = 2.0
 HEARSAY = 0.5  # [s] topics are not in order among each other
-LAST_WORD = 4.0  # [s] for the end of the turn after Ctrl-C; launch waits 5 s, then uses force
+LAST_WORD = 3.0  # [s] for the end of the turn after Ctrl-C; launch waits 5 s, then uses force
 
 
 def run_turn(
@@ -102,7 +102,7 @@ def _accompany(
 
 def _end(executor: SingleThreadedExecutor, client: TurnClient, timeout: float, code: int) -> int:
     """End the turn under way, of whomever it is, and return the exit code."""
-    client.send(0.0)
+    client.end()
     left = abs(math.degrees(client.left))
     what = 'the turn to end (clock paused?)'
     _wait(executor, lambda: client.remaining == 0.0 or client.gone, timeout, what)

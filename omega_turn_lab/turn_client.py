@@ -90,10 +90,14 @@ class TurnClient(Node):
         self._publisher.publish(Float64(data=angle))
 
     def cancel(self) -> None:
-        """End our turn, unless another client has taken over, and see the request delivered."""
+        """End our turn, unless another client has taken over."""
         if self.other is None and not self.gone:
-            self.send(0.0)
-            self._publisher.wait_for_all_acked(DELIVERY)
+            self.end()
+
+    def end(self) -> None:
+        """End the turn under way and see the request delivered, if anybody still listens."""
+        self.send(0.0)
+        self._publisher.wait_for_all_acked(DELIVERY)
 
     def _on_angle(self, message: Float64) -> None:
         if message.data in self._sent:

@@ -273,7 +273,7 @@ class GaitNode(Node):
         if self._state.goal is None or not limit < self._asked.age < self._states_seen.age:
             return
         self._state = self._controller.reset(self._controller.stop(self._state))
-        self._health.refuse('turn_angle', f'no joint_states for {limit:g} s since')
+        self._health.refuse('turn_angle', f'no good joint_states within {limit:g} s')
         self._report_remaining()
 
     def _publish_health(self) -> None:

@@ -230,7 +230,8 @@ def _params_file(name: str, text: str) -> Path:
     try:
         data = yaml.safe_load(path.read_text(encoding='utf-8'))
     except (OSError, yaml.YAMLError, UnicodeDecodeError) as error:
-        raise BadInputError(name, text, f'valid YAML ({error})') from error
+        why = ' '.join(str(error).split())
+        raise BadInputError(name, text, f'valid YAML ({why})') from error
     if not _holds_parameters(data):
         raise BadInputError(name, text, 'ROS parameters: node names with ros__parameters below')
     return path

@@ -90,9 +90,9 @@ setup(
     tests_require=['pytest'],
     entry_points={
         'console_scripts': [
-            'gait_node = omega_turn_ros.nodes.gait_node:main',
-            'admittance_node = omega_turn_ros.nodes.admittance_node:main',
-            'pybullet_bridge = omega_turn_sim_bridge.bridge_node:main',
+            'gait_node = omega_turn_ros.nodes.start:gait_node',
+            'admittance_node = omega_turn_ros.nodes.start:admittance_node',
+            'pybullet_bridge = omega_turn_sim_bridge.start:pybullet_bridge',
             'omega_turn = omega_turn_lab.cli:main',
         ],
     },

@@ -4,129 +4,78 @@ import os
 
 from launch.actions import (
     DeclareLaunchArgument,
-    ExecuteProcess,
     GroupAction,
     LogInfo,
     OpaqueFunction,
     SetEnvironmentVariable,
 )
-from launch.conditions import IfCondition
-from launch.substitutions import (
-    LaunchConfiguration,
-    PathJoinSubstitution,
-)
 from launch_ros.actions import Node, SetRemap
-from launch_ros.substitutions import FindPackageShare
 
 from launch import LaunchDescription
+from omega_turn_ros.nodes.launch_arguments import launch_arguments, read_arguments
 
 PACKAGE = 'omega_turn_ros'
-OWN_DOMAIN = '73'
-
-ARGUMENTS = (
-    ('namespace', '', 'Namespace of all nodes and topics; two robots share a graph this way.'),
-    ('turn_deg', '0.0', 'Turn commanded once everything runs [deg]; 0 waits for turn_angle.'),
-    ('use_sim', 'true', 'true: PyBullet stands in for the robot; false: your hardware driver.'),
-    ('gui', 'false', "Show PyBullet's window."),
-    ('real_time_factor', '1.0', 'Speed of the simulation; 0 is as fast as it can.'),
-    ('compliance', 'true', 'Run the admittance node and let the amplitudes yield.'),
-    ('heading_feedback', 'odom', 'odom: re-plan after each cycle; none: trust the prediction.'),
-    ('log_level', 'info', 'debug, info, warn or error.'),
-)
+PATIENCE = '30'  # [s] for the gait node and the robot before the first turn is given up
 
 
 def generate_launch_description() -> LaunchDescription:
-    default_params = PathJoinSubstitution([FindPackageShare(PACKAGE), 'config', 'omega_turn.yaml'])
-    arguments = [
-        DeclareLaunchArgument(name, default_value=default, description=text)
-        for name, default, text in ARGUMENTS
+    arguments = launch_arguments(os.environ)
+    declared = [
+        DeclareLaunchArgument(a.name, default_value=a.default, description=a.description)
+        for a in arguments
     ]
-    arguments += [
-        DeclareLaunchArgument(
-            'params_file', default_value=default_params, description='ROS parameters of all nodes.'
-        ),
-        DeclareLaunchArgument(
-            'use_sim_time',
-            default_value=LaunchConfiguration('use_sim'),
-            description='Nodes follow /clock; by default exactly when the robot is simulated.',
-        ),
-        DeclareLaunchArgument(
-            'domain_id',
-            default_value=os.environ.get('ROS_DOMAIN_ID', OWN_DOMAIN),
-            description='DDS domain: ROS_DOMAIN_ID where set, else one of our own.',
-        ),
-    ]
-    return LaunchDescription([*arguments, *_isolation(), OpaqueFunction(function=_bring_up)])
+    return LaunchDescription([*declared, OpaqueFunction(function=_bring_up, args=[arguments])])
 
 
-def _isolation() -> list:
+def _bring_up(context, arguments) -> list:
+    # Before any action: launch would not end the nodes that another's argument has left behind.
+    settings = read_arguments(arguments, context.launch_configurations)
+    # Each robot has a clock of its own, or two simulators would drive one /clock.
+    namespace = settings.namespace
+    clock = [SetRemap('/clock', f'/{namespace}/clock')] if namespace else []
+    return [*_isolation(settings), GroupAction([*clock, *_nodes(settings)])]
+
+
+def _isolation(settings) -> list:
     """Keep discovery on this machine and a domain of our own, unless the user chose otherwise."""
     reach = os.environ.get('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
-    domain = LaunchConfiguration('domain_id')
+    domain = str(settings.domain_id)
     return [
         SetEnvironmentVariable('ROS_AUTOMATIC_DISCOVERY_RANGE', reach),
         SetEnvironmentVariable('ROS_DOMAIN_ID', domain),
         LogInfo(
-            msg=[
-                'discovery range ', reach, ', domain ', domain,
-                '; in other terminals: export ROS_DOMAIN_ID=', domain,
-                ' ROS_AUTOMATIC_DISCOVERY_RANGE=', reach,
-            ]
-        ),
-    ]  # fmt: skip
-
-
-def _bring_up(context) -> list:
-    namespace = LaunchConfiguration('namespace').perform(context).strip('/')
-    # Each robot has a clock of its own, or two simulators would drive one /clock.
-    clock = [SetRemap('/clock', f'/{namespace}/clock')] if namespace else []
-    return [GroupAction([*clock, *_nodes(namespace), *_first_turn(context, namespace)])]
-
-
-def _nodes(namespace: str) -> list:
-    config = LaunchConfiguration
-    parameters = [config('params_file'), {'use_sim_time': config('use_sim_time')}]
-    shared = {
-        'package': PACKAGE,
-        'namespace': namespace,
-        'output': 'screen',
-        'arguments': ['--ros-args', '--log-level', config('log_level')],
-    }
-    return [
-        Node(
-            executable='pybullet_bridge',
-            condition=IfCondition(config('use_sim')),
-            parameters=[
-                config('params_file'),
-                {'gui': config('gui'), 'real_time_factor': config('real_time_factor')},
-            ],
-            **shared,
-        ),
-        Node(
-            executable='gait_node',
-            parameters=[
-                *parameters,
-                {
-                    'heading_feedback': config('heading_feedback'),
-                    'use_compliance': config('compliance'),
-                },
-            ],
-            **shared,
-        ),
-        Node(
-            executable='admittance_node',
-            condition=IfCondition(config('compliance')),
-            parameters=parameters,
-            **shared,
+            msg=f'discovery range {reach}, domain {domain}; in other terminals: '
+            f'export ROS_DOMAIN_ID={domain} ROS_AUTOMATIC_DISCOVERY_RANGE={reach}'
         ),
     ]
 
 
-def _first_turn(context, namespace: str) -> list:
-    degrees = LaunchConfiguration('turn_deg')
-    if float(degrees.perform(context)) == 0.0:
-        return []
-    command = ['ros2', 'run', PACKAGE, 'omega_turn', 'turn', '--deg', degrees]
-    if namespace:
-        command += ['--namespace', namespace]
-    return [ExecuteProcess(cmd=[*command, '--timeout', '30'], output='screen')]
+def _nodes(settings) -> list:
+    names = ['gait_node']
+    if settings.use_sim:
+        names.insert(0, 'pybullet_bridge')
+    if settings.admittance:
+        names.append('admittance_node')
+    shared = {'package': PACKAGE, 'namespace': settings.namespace, 'output': 'screen'}
+    nodes = [
+        Node(
+            executable=name,
+            # Named, what is given here goes before any pattern of the file, say /**.
+            name=name,
+            parameters=[str(settings.params_file), *filter(None, [settings.parameters[name]])],
+            ros_arguments=['--log-level', settings.log_level],
+            on_exit=_end_unless_killed,
+            **shared,
+        )
+        for name in names
+    ]
+    if settings.turn_deg:
+        command = ['turn', f'--deg={settings.turn_deg}', '--timeout', PATIENCE]
+        nodes.append(Node(executable='omega_turn', arguments=command, **shared))
+    return nodes
+
+
+def _end_unless_killed(event, context) -> None:
+    """End the launch with exit code 1 when a node gave up; the others outlive one killed."""
+    if event.returncode > 0 and not context.is_shutdown:
+        raise RuntimeError(f'{event.process_name} ended with exit code {event.returncode}')

@@ -13,19 +13,26 @@ from omega_turn_lab.worm.arguments import add_worm
 from omega_turn_ros import __version__
 from omega_turn_ros.errors import OmegaTurnError
 
+INTERRUPTED = 130  # exit code
+
 
 def main(arguments: list[str] | None = None) -> int:
     """Run `omega_turn`; return the exit code: 0 done, 1 failed, 2 bad input, 130 interrupted."""
     options = _parser().parse_args(arguments)
     signal.signal(signal.SIGTERM, signal.default_int_handler)  # ends as Ctrl-C does
     try:
-        return int(options.run(options))
+        code = int(options.run(options))
     except KeyboardInterrupt:
         print('interrupted', file=sys.stderr)
-        return 130
+        code = INTERRUPTED
     except OmegaTurnError as error:
         print(f'error: {error}', file=sys.stderr)
-        return 2 if isinstance(error, ValueError) else 1
+        code = 2 if isinstance(error, ValueError) else 1
+    if code == INTERRUPTED:
+        # Terminals and launch may signal twice; the second must not break into the exit.
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, signal.SIG_IGN)
+    return code
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -67,6 +74,9 @@ def _add_turn(parser: argparse.ArgumentParser) -> None:
         '--domain-id', type=_domain, default=None, help='default: ROS_DOMAIN_ID or 0'
     )
     parser.add_argument('--timeout', type=_seconds, default=10.0, help='for the gait node [s]')
+    parser.add_argument(
+        '--ros-args', nargs=argparse.REMAINDER, default=[], help='as of any node; goes last'
+    )
     parser.set_defaults(run=_run_turn)
 
 
@@ -165,7 +175,9 @@ def _run_demo(options: argparse.Namespace) -> int:
 def _run_turn(options: argparse.Namespace) -> int:
     from omega_turn_lab.turn import run_turn
 
-    return run_turn(options.deg, options.namespace, options.domain_id, options.timeout)
+    return run_turn(
+        options.deg, options.namespace, options.domain_id, options.timeout, options.ros_args
+    )
 
 
 def _run_design(options: argparse.Namespace) -> int:

@@ -8,17 +8,20 @@ from typing import Any
 from diagnostic_msgs.msg import DiagnosticArray
 from nav_msgs.msg import Odometry
 from rclpy.context import Context
+from rclpy.duration import Duration
 from rclpy.event_handler import QoSLivelinessChangedInfo, SubscriptionEventCallbacks
 from rclpy.node import Node
 from std_msgs.msg import Float64
 
 from omega_turn_ros.errors import BadInputError
-from omega_turn_ros.nodes.messages import JAMMED, heading_of
-from omega_turn_ros.nodes.qos import REMAINING_INPUT, REQUEST, STATE_INPUT
+from omega_turn_ros.nodes.messages import JAMMED, STATES_STALE, heading_of
+from omega_turn_ros.nodes.qos import REMAINING_INPUT, REQUEST, STATE, STATE_INPUT
+
+DELIVERY = Duration(seconds=1)  # for a last word to arrive
 
 
 class TurnClient(Node):
-    """Publishes one turn and follows `turn_remaining`, `odom` and what others command.
+    """Publishes one turn and hears what becomes of it, and what others command.
 
     Args:
         context: rclpy context.
@@ -26,8 +29,10 @@ class TurnClient(Node):
 
     Attributes:
         remaining: what the gait node said last [rad]; None before its first word.
-        left: the last of it that was not 0.0, or the angle sent [rad].
+        asked: the angle sent [rad].
+        left: what remained last that was not 0.0, or the angle sent [rad].
         accepted: the gait node has taken up the turn.
+        started: since then it has had joint_states, or has made progress.
         gone: the gait node lived, and lives no more.
         jammed: the gait node says the last cycle got nowhere.
         jams: how often it began to say so since the turn was sent.
@@ -37,8 +42,8 @@ class TurnClient(Node):
     def __init__(self, context: Context, **options: Any) -> None:
         super().__init__('omega_turn_client', context=context, **options)
         self.remaining: float | None = None
-        self.left = 0.0
-        self.accepted = self.gone = self.jammed = False
+        self.asked = self.left = 0.0
+        self.accepted = self.started = self.gone = self.jammed = False
         self.jams = 0
         self.other: float | None = None
         self._sent: list[float] = []
@@ -53,7 +58,7 @@ class TurnClient(Node):
             Float64, 'turn_remaining', self._on_remaining, REMAINING_INPUT, event_callbacks=alive
         )
         self.create_subscription(Odometry, 'odom', self._on_odom, STATE_INPUT)
-        self.create_subscription(DiagnosticArray, 'diagnostics', self._on_diagnostics, REQUEST)
+        self.create_subscription(DiagnosticArray, 'diagnostics', self._on_health, STATE)
 
     @property
     def connected(self) -> bool:
@@ -81,10 +86,22 @@ class TurnClient(Node):
     def send(self, angle: float) -> None:
         """Publish a turn [rad]."""
         if angle != 0.0:
-            self.left, self.accepted, self._heading_change = angle, False, 0.0
-            self.jammed, self.jams = False, 0
+            self.asked = self.left = angle
+            self.accepted = self.started = self.jammed = False
+            self.jams = 0
+            self._heading_change = 0.0
         self._sent.append(angle)
         self._publisher.publish(Float64(data=angle))
+
+    def cancel(self) -> None:
+        """End our turn, unless another client has taken over."""
+        if self.other is None and not self.gone:
+            self.end()
+
+    def end(self) -> None:
+        """End the turn under way and see the request delivered, if anybody still listens."""
+        self.send(0.0)
+        self._publisher.wait_for_all_acked(DELIVERY)
 
     def _on_angle(self, message: Float64) -> None:
         if message.data in self._sent:
@@ -97,16 +114,20 @@ class TurnClient(Node):
         self.remaining = message.data
         if self.other is None and message.data != 0.0:
             self.left, self.accepted = message.data, True
+            self.started = self.started or message.data != self.asked
 
     def _on_liveliness(self, event: QoSLivelinessChangedInfo) -> None:
         self.gone = event.alive_count == 0 and event.alive_count_change < 0
 
-    def _on_diagnostics(self, message: DiagnosticArray) -> None:
+    def _on_health(self, message: DiagnosticArray) -> None:
         for status in message.status:
-            if status.name.endswith('gait_node'):
-                jammed = JAMMED in status.message
-                self.jams += jammed and not self.jammed
-                self.jammed = jammed
+            if not status.name.endswith('/gait_node'):
+                continue
+            if STATES_STALE not in status.message:
+                self.started = self.started or self.accepted
+            jammed = JAMMED in status.message
+            self.jams += jammed and not self.jammed
+            self.jammed = jammed
 
     def _on_odom(self, message: Odometry) -> None:
         try:

@@ -23,6 +23,10 @@ class BadInputError(OmegaTurnError, ValueError):
         super().__init__(f'{field}: got {value!r}, expected {expected}')
 
 
+class RosArgumentsError(OmegaTurnError, ValueError):
+    """ROS 2 refuses its arguments, a parameter file or the domain."""
+
+
 class ConvergenceError(OmegaTurnError, ArithmeticError):
     """An iterative solver stopped short of its tolerance."""
 

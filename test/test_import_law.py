@@ -24,7 +24,7 @@ OPTIMISERS = {'cma'}  # for design alone
 
 ROS_SUFFIXES = ('_msgs', '_srvs', '_interfaces')
 ROS_PREFIXES = ('rclpy', 'rosidl', 'rmw_', 'ament_', 'launch', 'tf2', 'rosbag2', 'ros2')
-ROS_ROOMS = (f'{CONTROL}.nodes', f'{BRIDGE}.bridge_node', 'launch')
+ROS_ROOMS = (f'{CONTROL}.nodes', f'{BRIDGE}.bridge_node', f'{BRIDGE}.start', 'launch')
 # Of the lab: what talks to the nodes. The door (cli) may, but only once a command asks for it.
 ROS_LAB = tuple(
     f'{LAB}.{name}'

@@ -23,6 +23,7 @@ from omega_turn_ros.nodes.inbox import Inbox
 from omega_turn_ros.nodes.joint_message import JointReader, JointWriter
 from omega_turn_ros.nodes.messages import (
     JAMMED,
+    STATES_STALE,
     heading_of,
     read_offsets,
     text_of_end,
@@ -59,6 +60,7 @@ class GaitNode(Node):
         self._robot = load_robot(self._settings['robot'])
         self._health = Health(self)
         self._states_seen, self._odom_seen, self._amplitudes_seen = (Freshness() for _ in range(3))
+        self._asked = Freshness()
         self._apply(self._settings.values)
         self._period = 1.0 / self._settings['rate']
         self._time = StepTimer(2.5 * self._period, self._period)
@@ -174,6 +176,7 @@ class GaitNode(Node):
             except BadInputError as error:
                 self._health.refuse('turn_angle', str(error))
             else:
+                self._asked.mark()
                 self._health.note(f'turn {message.data == 0.0}', text_of_request(message.data))
                 self._report_remaining()
 
@@ -268,14 +271,24 @@ class GaitNode(Node):
         response.success, response.message = True, f'{self._state.mode.value}: ready for a turn'
         return response
 
+    def _drop_unstarted(self) -> None:
+        """Drop a turn without any joint_states for too long, or it would start unexpectedly."""
+        limit = self._settings['start_timeout']
+        if self._state.goal is None or not limit < self._asked.age < self._states_seen.age:
+            return
+        self._state = self._controller.reset(self._controller.stop(self._state))
+        self._health.refuse('turn_angle', f'no good joint_states within {limit:g} s')
+        self._report_remaining()
+
     def _publish_health(self) -> None:
         self._seldom.open()  # simulated time may stand still, and the ticks with it
+        self._drop_unstarted()
         state, values = self._state, self._settings.values
         problems = []
         if state.mode is Mode.STOPPED:
             problems.append('stopped: call reset')
         if not self._states_seen.fresh:
-            problems.append('joint_states stale')
+            problems.append(STATES_STALE)
             if state.goal is not None:
                 self._health.warn('stale', 'no joint_states: the turn waits')
         if values['heading_feedback'] == 'odom' and not self._odom_seen.fresh:

@@ -47,6 +47,14 @@ GAIT_PARAMETERS = (
     Spec('offset_limit', 0.5, 'Largest amplitude offset accepted.', 'rad', 1e-3, 1.5),
     Spec('offset_rate', 1.0, 'Largest rate of amplitude offsets.', 'rad/s', 1e-3, 10.0),
     Spec('state_timeout', 0.5, 'joint_states older than this pause the turn.', 's', 0.02, 60.0),
+    Spec(
+        'start_timeout',
+        30.0,
+        'A turn that has had no joint_states after this is dropped.',
+        's',
+        0.1,
+        3600.0,
+    ),
     Spec('odom_timeout', 0.5, 'odom older than this: heading is predicted.', 's', 0.02, 60.0),
     Spec(
         'amplitude_timeout',

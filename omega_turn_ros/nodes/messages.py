@@ -11,6 +11,7 @@ from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.nodes.joint_message import JointReader
 
 JAMMED = 'jammed'  # in diagnostics, while a turn goes on and gets nowhere
+STATES_STALE = 'joint_states stale'  # a problem in the gait node's diagnostics
 
 
 def heading_of(message: Odometry) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import array
 import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
@@ -82,7 +83,8 @@ class ParameterSpec:
                 return float(value)  # type: ignore[arg-type]
             if isinstance(value, int):
                 return value
-        raise BadInputError(f'parameter {self.name}', value, self.expected)
+        shown = list(value) if isinstance(value, array.array) else value
+        raise BadInputError(f'parameter {self.name}', shown, self.expected)
 
     def _is_number(self, value: object) -> bool:
         if isinstance(value, bool) or not isinstance(value, (int, float)):

@@ -3,20 +3,51 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import socket
 import sys
 import threading
+import time
 from collections.abc import Callable, Sequence
 
 import rclpy
+from rclpy.context import Context
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
-from omega_turn_ros.errors import OmegaTurnError
+from omega_turn_ros.errors import OmegaTurnError, RosArgumentsError
 
 ENDINGS = {signal.SIGINT, signal.SIGTERM}
+SAME = 1.0  # [s] within which a second signal is the first again: a terminal's and launch's own
+
+
+def init_ros(
+    args: Sequence[str] | None, context: Context | None = None, domain_id: int | None = None
+) -> None:
+    """Start ROS 2 without its signal handlers.
+
+    Args:
+        args: command line; None takes `sys.argv`.
+        context: to start; None for the default one.
+        domain_id: DDS domain; None takes ROS_DOMAIN_ID or 0.
+
+    Raises:
+        RosArgumentsError: ROS 2 refuses the arguments, a parameter file or the domain.
+    """
+    try:
+        rclpy.init(
+            args=None if args is None else list(args),
+            context=context,
+            domain_id=domain_id,
+            signal_handler_options=SignalHandlerOptions.NO,
+        )
+    except (rclpy_implementation.RCLError, rclpy_implementation.UnknownROSArgsError) as error:
+        places = r', at [^,]+:\d+'  # in the source of rcl
+        text = ' '.join(re.sub(places, '', str(error)).split())
+        raise RosArgumentsError(text.removeprefix('failed to initialize rcl: ')) from error
 
 
 def run_node(make_node: Callable[[], Node], args: Sequence[str] | None = None) -> int:
@@ -24,7 +55,8 @@ def run_node(make_node: Callable[[], Node], args: Sequence[str] | None = None) -
 
     Signals wake a thread of their own. So none interrupts a callback half-way, as
     KeyboardInterrupt or the shutdown of rclpy's own handlers would: the callback under way
-    finishes, then the node is destroyed. A second signal ends the process at once.
+    finishes, then the node is destroyed. A second signal, later than SAME, ends the process at
+    once.
 
     Args:
         make_node: builds the node; OmegaTurnError means its settings were refused.
@@ -37,10 +69,7 @@ def run_node(make_node: Callable[[], Node], args: Sequence[str] | None = None) -
     ended = threading.Event()
     node: Node | None = None
     try:
-        rclpy.init(
-            args=None if args is None else list(args),
-            signal_handler_options=SignalHandlerOptions.NO,
-        )
+        init_ros(args)
         executor = SingleThreadedExecutor()
         threading.Thread(
             target=_wait_for_signal, args=(reader, executor, ended), daemon=True
@@ -81,9 +110,13 @@ def _wait_for_signal(
     reader: socket.socket, executor: SingleThreadedExecutor, ended: threading.Event
 ) -> None:
     reader.recv(1)
+    first = time.monotonic()
     ended.set()
     executor.create_task(_nothing)  # wakes the executor
-    os._exit(128 + reader.recv(1)[0])
+    while True:
+        number = reader.recv(1)[0]
+        if time.monotonic() - first > SAME:
+            os._exit(128 + number)
 
 
 def _nothing() -> None:

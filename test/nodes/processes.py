@@ -57,9 +57,10 @@ class Process:
         """Whether it still runs."""
         return self._process.poll() is None
 
-    def end(self, number: signal.Signals) -> int:
-        """Send a signal and return the exit code."""
-        self._process.send_signal(number)
+    def end(self, number: signal.Signals, times: int = 1) -> int:
+        """Send a signal, so many times at once, and return the exit code."""
+        for _ in range(times):
+            self._process.send_signal(number)
         return self.wait()
 
     def wait(self) -> int:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import math
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -149,6 +150,39 @@ def test_lost_joint_states_freeze_the_command_until_they_return(make_turner: Mak
     del turner.robot.spoil['joint_states']
     turner.wait_for_end()
     turner.graph.spin_until(lambda: turner.user.health['gait_node'].message == 'OK', 'health')
+
+
+@pytest.mark.parametrize('heard_before', [False, True])
+def test_a_turn_without_joint_states_is_dropped_and_never_begins(
+    make_turner: MakeTurner, heard_before: bool
+) -> None:
+    turner = make_turner(start_timeout=0.1)
+    if heard_before:
+        turner.wait_for_commands(5)
+    said = turner.robot.time
+    turner.robot.spoil['joint_states'] = silence
+    if heard_before:
+        turner.graph.spin_until(lambda: turner.robot.time > said, 'the last answer')
+        turner.user.fact('gait_node', 'mode')  # by then nothing is on its way
+    turner.user.turn(1.0)
+    remaining = turner.user.remaining
+    turner.graph.spin_until(lambda: remaining[-2:] == [1.0, 0.0], 'the end of the wait')
+    assert turner.user.refused('gait_node', 'turn_angle') == 1
+    turner.robot.spoil.clear()
+    assert not turner.wait_for_commands(50).any()
+    turner.start_turn(0.5)  # the next is welcome
+
+
+def test_a_turn_under_way_is_never_dropped(make_turner: MakeTurner) -> None:
+    turner = make_turner(start_timeout=2.0)
+    turner.start_turn(1.0)
+    turner.wait_for_cycle()
+    turner.robot.spoil['joint_states'] = silence
+    lost = time.monotonic()
+    turner.graph.spin_until(lambda: time.monotonic() > lost + 2.5, 'more than start_timeout')
+    turner.robot.spoil.clear()
+    assert turner.user.refused('gait_node', 'turn_angle') == 0
+    assert turner.user.remaining[-1] != 0.0
 
 
 def test_lost_odom_lets_the_prediction_end_the_turn(make_turner: MakeTurner) -> None:

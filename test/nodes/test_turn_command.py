@@ -11,8 +11,11 @@ from collections.abc import Callable, Iterator
 
 import pytest
 from processes import Process
-from ros_graph import Graph
-from turner import FakeRobot, Turner, User
+from ros_graph import Graph, User
+from sensor_msgs.msg import JointState
+from turner import QUICK, FakeRobot, Turner, silence
+
+from omega_turn_ros.nodes.gait_node import GaitNode
 
 MakeTurner = Callable[..., Turner]
 ENDED = 'commanded -45.0 deg, ended'
@@ -145,6 +148,50 @@ def test_a_gait_node_that_dies_under_way_is_an_error_within_seconds(
     assert code == 1 and re.fullmatch(r'error: the gait node went away, \d\d\.\d deg left', said)
 
 
+def test_ctrl_c_for_the_gait_node_too_ends_the_command_at_once(
+    graph: Graph, start: Callable[..., Command]
+) -> None:
+    FakeRobot(graph, stepped=False)
+    user = User(graph)
+    gait = Process(graph.domain_id, graph.namespace, 'gait_node', use_compliance=False)
+    try:
+        command = start('--deg', '57')
+        graph.spin_until(lambda: user.remaining[-1:] not in ([], [0.0]), 'the turn')
+        command.process.send_signal(signal.SIGINT)
+        gait.end(signal.SIGINT)
+        code, said = command.wait(10.0)
+    finally:
+        gait.close()
+    assert code == 130 and re.search(r', \d\d\.\d deg left', said)
+
+
+def test_a_turn_that_nothing_begins_is_given_up_and_cancelled(
+    make_turner: MakeTurner, start: Callable[..., Command]
+) -> None:
+    turner = make_turner()
+    turner.robot.spoil['joint_states'] = silence
+    code, said = start('--deg', '20', '--timeout', '8').wait()
+    assert code == 1 and 'error: nothing moves: 8 s without good joint_states' in said
+    turner.robot.spoil.clear()
+    assert not turner.wait_for_commands(50).any()
+    assert turner.user.remaining[-1] == 0.0
+
+
+def test_a_turn_given_up_while_the_clock_stood_still_does_not_begin_later(
+    graph: Graph, start: Callable[..., Command]
+) -> None:
+    gait = graph.add(GaitNode, use_sim_time=True, use_compliance=False, **QUICK)
+    user = User(graph)
+    code, said = start('--deg', '20', '--timeout', '8').wait()
+    assert code == 1 and 'in vain for the gait node to accept the turn' in said
+    assert 'clock paused?' in said
+    commands = user.hear(JointState, 'joint_commands')
+    FakeRobot(graph, clock=True)
+    graph.spin_until(lambda: len(commands) > 50, 'commands')
+    assert gait.cycles_done == 0 and user.remaining[-1] == 0.0
+    assert not any(any(message.position) for message in commands)
+
+
 def test_ctrl_c_ends_the_turn_and_says_that_the_body_straightens(
     make_turner: MakeTurner, start: Callable[..., Command]
 ) -> None:
@@ -161,6 +208,10 @@ def test_ctrl_c_ends_the_turn_and_says_that_the_body_straightens(
     ('arguments', 'expected'),
     [
         (['--deg', '10', '--namespace', 'a b'], "error: namespace: got 'a b', expected letters"),
+        (
+            ['--deg', '10', '--ros-args', '--log-level', 'loud'],
+            "error: Couldn't parse log level: '--log-level loud'",
+        ),
         (['--deg', 'abc'], 'argument --deg: abc: expected a number [deg]'),
         (['--deg', 'nan'], 'argument --deg: nan: expected a number [deg]'),
         (['--deg', '1e6'], 'argument --deg: 1e6: expected less than 1e6 deg'),
@@ -172,4 +223,4 @@ def test_a_wrong_argument_is_refused_in_one_line(arguments: list[str], expected:
     command = [sys.executable, '-m', 'omega_turn_lab.cli', 'turn', *arguments]
     done = subprocess.run(command, capture_output=True, text=True, timeout=60)
     assert done.returncode == 2 and expected in done.stderr
-    assert 'Traceback' not in done.stderr
+    assert 'Traceback' not in done.stderr and 'Warning' not in done.stderr

@@ -15,6 +15,7 @@ from omega_turn_ros.mechanics.chain import PlanarChain
 from omega_turn_ros.mechanics.trajectory import heading_along
 from omega_turn_ros.robot import Robot, load_robot
 from omega_turn_sim_bridge.simulation import SimulationConfig
+from omega_turn_sim_bridge.terrain_config import load_terrain
 
 
 def quasi_static_deg(robot: Robot, gait: TwoWaveGait) -> float:
@@ -29,8 +30,10 @@ def physics_deg(robot: Robot, gait: TwoWaveGait, period: float, config: Simulati
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--robot', default='limbless16')
-    robot = load_robot(parser.parse_args().robot)
-    base = SimulationConfig()
+    parser.add_argument('--terrain', default='flat', choices=('flat', 'coulomb'))
+    options = parser.parse_args()
+    robot = load_robot(options.robot)
+    base = SimulationConfig(terrain=load_terrain(options.terrain))
     cases = [('', 10.0, base)]
     cases += [(f'mu {mu:g}', 10.0, replace(base, friction=mu)) for mu in (0.2, 0.8)]
     cases += [(f'{period:g} s', period, base) for period in (5.0, 20.0)]

@@ -28,7 +28,7 @@ def robot() -> Robot:
 
 
 def test_every_kind_of_ground_is_shipped_under_its_name() -> None:
-    assert sorted(KINDS) == config_names('terrains')
+    assert set(KINDS) <= set(config_names('terrains'))
     assert all(load_terrain(kind).kind == kind for kind in KINDS)
 
 

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 DODGE = 0.007  # [BL] between the marks of two modes
 SHAPES = 9  # drawn of a turn
 MARGIN = 0.12  # [m] around the robot's way
-EXTRA_COLOURS = (*COLOURS, '0.5', '#E69F00')
-EXTRA_MARKERS = (*MARKERS, 'x', 'v')
+EXTRA_COLOURS = (*COLOURS, '0.5', '#E69F00', '#56B4E9')
+EXTRA_MARKERS = (*MARKERS, 'x', 'v', 'P')
 
 
 def draw_pegboard(

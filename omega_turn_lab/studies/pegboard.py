@@ -53,6 +53,7 @@ MODES: dict[str, ComplianceConfig | None] = {
 }
 COMPARED = (OPEN, PUSHING)
 LASTING = (PUSHING, 'yielding')  # tried in a long jam
+PICTURED = 0.3  # [BL]
 LONG, LONG_PERIOD, TIGHT = 50, 5.0, 0.2  # cycles, their period [s] and spacing [BL] of a long jam
 
 
@@ -178,6 +179,14 @@ def _records(outcome: Outcome) -> list[dict[str, Any]]:
     return [_record(task, outcome.tried[task]) for task in _trials(outcome)]
 
 
+def _typical_placement(outcome: Outcome, spacing: float) -> int:
+    """Placement whose gain comes nearest to the mean gain."""
+    without, found = (angles(outcome, spacing, mode) for mode in COMPARED)
+    gains = [b - a for a, b in zip(without, found)]
+    mean = sum(gains) / len(gains)
+    return min(range(len(gains)), key=lambda seed: abs(gains[seed] - mean))
+
+
 def _draw(outcome: Outcome, out: Path) -> None:
     if not outcome.tried:
         return
@@ -186,7 +195,8 @@ def _draw(outcome: Outcome, out: Path) -> None:
         mode: [spread_of(angles(outcome, s, mode), seed) for s in SPACINGS_BL] for mode in MODES
     }
     free = outcome.tried[_on_open_ground(outcome, OPEN)]['angle_deg']
-    pictured = {mode: trial(outcome, 0.3, mode, 0) for mode in COMPARED}
+    typical = _typical_placement(outcome, PICTURED)
+    pictured = {mode: trial(outcome, PICTURED, mode, typical) for mode in COMPARED}
     motions = {mode: (task, outcome.tried[task]) for mode, task in pictured.items()}
     draw_pegboard(out / f'{NAME}.png', SPACINGS_BL, curves, free, motions)
 

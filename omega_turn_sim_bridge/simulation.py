@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from omega_turn_ros.errors import BadInputError, SimulationError
-from omega_turn_ros.robot import STANDARD_GRAVITY, Robot
+from omega_turn_ros.robot import STANDARD_GRAVITY, LeggedRobot, Robot
 from omega_turn_sim_bridge.engine import pybullet
+from omega_turn_sim_bridge.legged import legged_urdf
 from omega_turn_sim_bridge.robot import ride_height, urdf_from_robot
 from omega_turn_sim_bridge.terrain import build_ground
 from omega_turn_sim_bridge.terrain_config import TerrainConfig
@@ -127,6 +128,8 @@ class Simulation:
         self._joints = list(range(robot.n_joints))
         self._yaw = robot.yaw_indices
         self._mass_fractions = robot.body_masses / robot.body_masses.sum()
+        legged = isinstance(robot, LeggedRobot)
+        self._bodies = self._yaw.tolist() if legged else self._joints  # of the mean body frame
         self._behind = self._fraction_behind_joints()
         self._steps = 0
         try:
@@ -176,7 +179,7 @@ class Simulation:
         """
         self._check_open()
         front = self.robot.length * 0.5 - self.robot.head_length
-        above = self._ground.top + ride_height(self.robot)
+        above = self._ground.top + self._ride_height()
         position = (front, 0.0, above)
         pybullet.resetBasePositionAndOrientation(
             self._body, self._base_frame(position), (0, 0, 0, 1), physicsClientId=self._client
@@ -343,7 +346,7 @@ class Simulation:
             flags |= pybullet.URDF_USE_SELF_COLLISION_EXCLUDE_PARENT
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / f'{self.robot.name}.urdf'
-            path.write_text(urdf_from_robot(self.robot, solid=self._ground.solid))
+            path.write_text(self._urdf())
             self._body = pybullet.loadURDF(str(path), flags=flags, physicsClientId=client)
         stiffness = self._body_stiffness()
         for link in range(-1, self.robot.n_joints):
@@ -362,6 +365,19 @@ class Simulation:
         self._position_gains = [0.3] * self.robot.n_joints
         self._velocity_gains = [1.0] * self.robot.n_joints
         self.reset()
+
+    def _urdf(self) -> str:
+        if not isinstance(self.robot, LeggedRobot):
+            return urdf_from_robot(self.robot, solid=self._ground.solid)
+        if self._ground.solid:
+            raise BadInputError('terrain', self.config.terrain.kind, 'flat for a robot with legs')
+        return legged_urdf(self.robot)
+
+    def _ride_height(self) -> float:
+        """Height of the body axis above the ground at rest [m]."""
+        if isinstance(self.robot, LeggedRobot):
+            return self.robot.legs.height
+        return ride_height(self.robot)
 
     def _body_stiffness(self) -> float:
         """Contact stiffness of the robot's bodies [N/m]; what carries it makes up for the rest.
@@ -401,7 +417,7 @@ class Simulation:
         )
         base_velocity, base_rate = pybullet.getBaseVelocity(self._body, physicsClientId=client)
         links = pybullet.getLinkStates(
-            self._body, self._joints, computeLinkVelocity=1, physicsClientId=client
+            self._body, self._bodies, computeLinkVelocity=1, physicsClientId=client
         )
         yaw = math.atan2(2.0 * (qw * qz + qx * qy), 1.0 - 2.0 * (qy * qy + qz * qz))
         self._base_yaw += math.remainder(yaw - self._base_yaw, math.tau)

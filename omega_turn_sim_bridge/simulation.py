@@ -16,6 +16,7 @@ from omega_turn_ros.robot import STANDARD_GRAVITY, LeggedRobot, Robot
 from omega_turn_sim_bridge.engine import pybullet
 from omega_turn_sim_bridge.legged import legged_urdf
 from omega_turn_sim_bridge.robot import ride_height, urdf_from_robot
+from omega_turn_sim_bridge.stiction import Stiction
 from omega_turn_sim_bridge.terrain import build_ground
 from omega_turn_sim_bridge.terrain_config import TerrainConfig
 
@@ -40,6 +41,8 @@ class SimulationConfig:
         time_step: one solver step [s].
         solver_iterations: of the constraint solver, per step.
         friction: kinetic friction coefficient between feet and ground.
+        static_friction: coefficient of a foot at rest, as on carpet, see `stiction`; 0 is the
+            kinetic one. For robots with legs.
         contact_stiffness: of each foot [N/m]. Compliant feet share the weight evenly; rigid
             contact is statically indeterminate and lets friction act at random places.
         contact_damping: of each foot [N s/m].
@@ -56,6 +59,7 @@ class SimulationConfig:
     time_step: float = 1.0 / 200.0
     solver_iterations: int = 20
     friction: float = 0.5
+    static_friction: float = 0.0
     contact_stiffness: float = 5e3
     contact_damping: float = 100.0
     effort_limit: float = 0.0
@@ -72,6 +76,7 @@ class SimulationConfig:
         positive = ('time_step', 'solver_iterations', 'contact_stiffness', 'servo_frequency')
         not_negative = (
             'friction',
+            'static_friction',
             'contact_damping',
             'effort_limit',
             'velocity_limit',
@@ -83,6 +88,9 @@ class SimulationConfig:
             if not math.isfinite(value) or value < 0 or (name in positive and value == 0):
                 expected = 'a finite number > 0' if name in positive else 'a finite number >= 0'
                 raise BadInputError(name, value, expected)
+        if 0.0 < self.static_friction < self.friction:
+            expected = f'0, or at least the kinetic friction {self.friction:g}'
+            raise BadInputError('static_friction', self.static_friction, expected)
 
 
 @dataclass(frozen=True, slots=True)
@@ -241,6 +249,8 @@ class Simulation:
             self._reference += dt * rate
             self._reference_rate = rate
             self._drive(rate)
+            if self._stiction is not None:
+                self._stiction.update()
             pybullet.stepSimulation(physicsClientId=self._client)
             self._steps += 1
             # Commands come in stairs, so torques ripple in step with them: a reading that looked
@@ -361,6 +371,7 @@ class Simulation:
                 jointDamping=0.0,
                 physicsClientId=client,
             )
+        self._stiction = self._carpet()
         self._forces = [self._effort_limit] * self.robot.n_joints
         self._position_gains = [0.3] * self.robot.n_joints
         self._velocity_gains = [1.0] * self.robot.n_joints
@@ -372,6 +383,15 @@ class Simulation:
         if self._ground.solid:
             raise BadInputError('terrain', self.config.terrain.kind, 'flat for a robot with legs')
         return legged_urdf(self.robot)
+
+    def _carpet(self) -> Stiction | None:
+        """What makes feet stick harder than they slide, if anything does."""
+        kinetic, static = self.config.friction, self.config.static_friction
+        if static <= kinetic:
+            return None
+        if not isinstance(self.robot, LeggedRobot):
+            raise BadInputError('static_friction', static, 'a robot with legs')
+        return Stiction(self._client, self._body, self.robot, (kinetic, static))
 
     def _ride_height(self) -> float:
         """Height of the body axis above the ground at rest [m]."""

@@ -11,6 +11,7 @@ NAMES = (
     'granular',
     'pegboard',
     'height',
+    'legged',
     'sensitivity',
     'beyond',
 )

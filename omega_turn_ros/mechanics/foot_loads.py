@@ -1,9 +1,10 @@
 """How feet that are down share the weight of a body above them (own derivation).
 
 'equal' is the paper's assumption. It leaves a moment: five feet, three of them on one side, cannot
-bear equal loads with the centre of mass between the sides. 'static' is what a stiff body on equally
-soft feet does: loads are linear in the place of the foot, sum N = 1 and sum N p = the centre of
-mass, taken at the origin of the mean body frame; a foot that would have to pull carries nothing.
+bear equal loads with the centre of mass between the sides. 'static' is what a stiff body on feet
+that give equally does: loads are linear in the place of the foot, sum N = 1 and sum N p = the
+centre of mass, taken at the origin of the mean body frame; a foot that would have to pull carries
+nothing.
 """
 
 from __future__ import annotations

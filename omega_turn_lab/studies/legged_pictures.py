@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import uniform_filter1d
 
 from omega_turn_lab.studies.figures import COLOURS, new_figure
 from omega_turn_lab.studies.height import PATH_COLOUR, RED_BLACK
@@ -70,12 +71,14 @@ def draw_legged(
         _draw_shapes(shapes, motion, gait)
         picture = _draw_height(heights, motion, gait, field)
         bar = figure.colorbar(picture, ax=heights, aspect=25)
-        bar.set_label('height function of rotation [rad$^{-1}$]')
+        bar.set_label(
+            'height function of rotation [rad$^{-1}$],\nmean over the delay of a leg pair'
+        )
         bar.outline.set_visible(False)
         _draw_snapshots(snapshots, motion, motions)
         _draw_angles(angles, curves)
         for axes, letter in zip((shapes, heights, snapshots, angles), 'abcd'):
-            axes.set_title(f'({letter})', loc='left', fontsize=9.0)
+            axes.set_title(f'({letter})', loc='left', fontsize=9.0, x=-0.1)
 
 
 def _draw_robot(axes: Axes, motion: LeggedMotion, q: Array, place: Array, frame: Array) -> None:
@@ -127,11 +130,14 @@ def _draw_height(axes: Axes, motion: LeggedMotion, gait: LeggedGait, field: Cell
     """Height function with the forward path and two turning paths."""
     from matplotlib.colors import LinearSegmentedColormap
 
-    limit = float(np.quantile(np.abs(field.mean), 0.98))
+    # Each foot that comes down or goes up makes a ridge; over the delay of a pair there are two.
+    window = round(gait.xi * field.mean.shape[0] / gait.n_pairs)
+    shown = uniform_filter1d(field.mean, window, axis=0, mode='wrap')
+    limit = float(np.abs(shown).max())
     low, high = np.degrees(field.second[[0, -1]])
     left = field.first[0] / PERIOD
     # The grid begins half a cell late; a period before it the same cells come again.
-    twice = np.concatenate([field.mean, field.mean]).T
+    twice = np.concatenate([shown, shown]).T
     picture = axes.imshow(
         twice,
         origin='lower',
@@ -152,7 +158,7 @@ def _draw_height(axes: Axes, motion: LeggedMotion, gait: LeggedGait, field: Cell
         w = np.degrees(scale * gait.offset(phase * PERIOD))
         axes.plot(phase, w, color='w', lw=3.0)
         axes.plot(phase, w, color=PATH_COLOUR, lw=1.6, ls=style, label=label)
-    axes.legend(loc='lower left', fontsize=6.0, frameon=True, framealpha=0.9)
+    axes.legend(loc='lower left', fontsize=6.0, frameon=True, framealpha=0.9, handlelength=3.0)
     axes.set(xlim=(0.0, 1.0), ylim=(low, high), xlabel=r'$\phi$', ylabel='$w_3$ [deg]')
     axes.set_xticks(*TICKS)
     return picture
@@ -178,7 +184,7 @@ def _draw_snapshots(
         at = -1.6 * row * motion.robot.length
         axes.text(-1.05 * wide, at, f'$A_3$ = {a_3:.0f}°', rotation=90, va='center')
     for column, instant in enumerate(INSTANTS):
-        axes.text(column * wide, 1.0 * motion.robot.length, f'{6.0 * instant:.1f} s', ha='center')
+        axes.text(column * wide, 0.98 * motion.robot.length, f'{6.0 * instant:.1f} s', ha='center')
     axes.set_aspect('equal')
     axes.axis('off')
 

@@ -162,13 +162,12 @@ def _run_turn(options: argparse.Namespace) -> int:
 
 def _run_design(options: argparse.Namespace) -> int:
     from omega_turn_lab.design import run_design
-    from omega_turn_ros.design.catalogue import CATALOGUE, Recipe, within_limits
+    from omega_turn_ros.design.catalogue import Recipe, recipes_for
     from omega_turn_ros.robot import load_robot
 
     robot = load_robot(options.robot)
     if options.all:
-        recipes = [within_limits(recipe, robot) for recipe in CATALOGUE]
-        return run_design(robot, recipes, options.seed, options.out)
+        return run_design(robot, recipes_for(robot), options.seed, options.out)
     k_f, k_t = options.k_f, options.k_t
     limit = options.theta_max_deg or min(90.0, math.degrees(robot.position_limit))
     name = options.name or f'k{k_f:g}_{k_t:g}_{limit:g}deg_{options.method}'.replace('.', 'p')

@@ -7,7 +7,7 @@ import math
 import os
 import sys
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from diagnostic_msgs.msg import DiagnosticArray
@@ -61,7 +61,7 @@ class DemoOptions:
         robot: name in config/robots, or a path.
         period: duration of one gait cycle [s].
         heading_feedback: 'odom' or 'none'.
-        compliance: run the admittance node too.
+        compliance: run the admittance node too, if the gait has amplitudes that yield.
         friction: of the ground.
         seed: of the simulation.
         gui: show PyBullet's window.
@@ -96,6 +96,7 @@ def demo_domain() -> int:
 def run_demo(options: DemoOptions) -> int:
     """Turn the robot, print the result, write turn.png, .gif, .json and .mcap; return 0."""
     gait, robot = load_gait(options.gait), load_robot(options.robot)
+    options = replace(options, compliance=options.compliance and gait.gait.complies)
     commanded = math.radians(options.turn_deg)
     predicted = plan_turn(commanded, gait.calibration).angle
     make_folder(options.out)

@@ -12,11 +12,18 @@ from tqdm import tqdm
 from omega_turn_lab.folder import make_folder
 from omega_turn_ros.design.catalogue import Recipe, design_recipe
 from omega_turn_ros.design.problem import Design
+from omega_turn_ros.design.sidewinding import (
+    SidewindingDesign,
+    SidewindingRecipe,
+    design_sidewinding,
+)
 from omega_turn_ros.gaits.library import LibraryGait, gait_to_mapping
 from omega_turn_ros.robot import Robot
 
 
-def run_design(robot: Robot, recipes: Sequence[Recipe], seed: int, out: Path) -> int:
+def run_design(
+    robot: Robot, recipes: Sequence[Recipe | SidewindingRecipe], seed: int, out: Path
+) -> int:
     """Write one file per recipe into `out`; return 0.
 
     Raises:
@@ -25,7 +32,11 @@ def run_design(robot: Robot, recipes: Sequence[Recipe], seed: int, out: Path) ->
     make_folder(out)
     lines, entries = [], []
     for recipe in tqdm(recipes, desc='designing', unit='gait'):
-        design, entry = design_recipe(recipe, robot, seed)
+        design: Design | SidewindingDesign
+        if isinstance(recipe, SidewindingRecipe):
+            design, entry = design_sidewinding(recipe, robot)
+        else:
+            design, entry = design_recipe(recipe, robot, seed)
         text = yaml.safe_dump(
             gait_to_mapping(entry), sort_keys=False, default_flow_style=None, width=96
         )
@@ -46,14 +57,18 @@ def _speed(entry: LibraryGait) -> float:
     return entry.calibration.largest_angle / (2.0 * math.pi * entry.calibration.peak_rate)
 
 
-def _account(design: Design, entry: LibraryGait, path: Path) -> str:
+def _account(design: Design | SidewindingDesign, entry: LibraryGait, path: Path) -> str:
     parameters = ', '.join(f'{k} {_short(v)}' for k, v in entry.gait.to_mapping().items())
+    search = f'{design.evaluations} cycles integrated'
+    if isinstance(design, Design):
+        search = (
+            f'{design.method}: {design.agreeing} of {design.starts} starts within 5 % of the '
+            f'best, {search}, stopped by {design.reason}'
+        )
     return (
         f'{entry.name}: {math.degrees(design.angle):.1f} deg per cycle, largest joint angle '
         f'{math.degrees(entry.theta_max):.1f} deg, clears itself by {1e3 * design.clearance:.1f} '
-        f'mm\n  {parameters}\n  {design.method}: {design.agreeing} of {design.starts} starts '
-        f'within 5 % of the best, {design.evaluations} cycles integrated, stopped by '
-        f'{design.reason}\n  written to {path}'
+        f'mm\n  {parameters}\n  {search}\n  written to {path}'
     )
 
 

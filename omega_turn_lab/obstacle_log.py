@@ -90,7 +90,7 @@ class TrialLog:
         energy = stored_energy(state.admittance, law)
         work = 0.0
         if self._phases is not None:
-            gait = self._trial.gait
+            gait = self._trial.waves
             jacobian = wave_jacobian(*self._phases, gait.k_f, gait.k_t, self._trial.robot.n_yaw)
             force = np.array(config.torque_scale) * (jacobian @ state.external)
             work = float(force @ rate) * READING

@@ -23,8 +23,11 @@ from omega_turn_ros.compliance.controller import (
 from omega_turn_ros.compliance.external_torque import STILL
 from omega_turn_ros.design.calibrate import make_library_gait
 from omega_turn_ros.errors import BadInputError
+from omega_turn_ros.gaits.calibration import Calibration
 from omega_turn_ros.gaits.controller import GaitController
 from omega_turn_ros.gaits.controller_state import ControllerConfig, Inputs, Output
+from omega_turn_ros.gaits.gait import Gait
+from omega_turn_ros.gaits.library import LibraryGait
 from omega_turn_ros.gaits.limits import JointLimits
 from omega_turn_ros.gaits.wave_gait import WaveGait
 from omega_turn_ros.mechanics.chain import PlanarChain
@@ -48,7 +51,7 @@ DEPTH_EVERY = 5  # readings between two looks at how deep contacts are
 
 @dataclass(frozen=True, slots=True)
 class ObstacleTrial:
-    """A turn of whole cycles at full amplitude on some ground.
+    """A turn of whole cycles at full scale on some ground.
 
     Attributes:
         robot: the robot.
@@ -59,6 +62,7 @@ class ObstacleTrial:
         cycles: how many.
         period: of a cycle [s].
         friction: between feet and level ground.
+        start_phase: at which cycles begin [rad]; a two-wave gait knows its own.
     """
 
     code: ClassVar[tuple[str, ...]] = (
@@ -69,18 +73,35 @@ class ObstacleTrial:
         'omega_turn_lab.obstacle_log',
     )
     robot: Robot
-    gait: WaveGait
+    gait: Gait
     terrain: TerrainConfig = field(default_factory=TerrainConfig)
     seed: int = 0
     compliance: ComplianceConfig | None = None
     cycles: int = 2
     period: float = 10.0
     friction: float = 0.5
+    start_phase: float | None = None
 
     def __post_init__(self) -> None:
-        """Refuse a turn of no cycle."""
+        """Refuse a turn of no cycle, and what does not go with the gait."""
         if self.cycles < 1:
             raise BadInputError('cycles', self.cycles, 'at least 1')
+        if self.compliance is not None and not isinstance(self.gait, WaveGait):
+            raise BadInputError('compliance', self.compliance, 'None: this gait has no amplitudes')
+        if (self.start_phase is None) is not isinstance(self.gait, WaveGait):
+            expected = 'a phase [rad], or None for a two-wave gait'
+            raise BadInputError('start_phase', self.start_phase, expected)
+
+    @property
+    def waves(self) -> WaveGait:
+        """The gait, where it is of two waves.
+
+        Raises:
+            BadInputError: it is of another kind.
+        """
+        if not isinstance(self.gait, WaveGait):
+            raise BadInputError('gait', self.gait, 'a gait of two waves')
+        return self.gait
 
     def __str__(self) -> str:
         """Name the case."""
@@ -112,19 +133,34 @@ class ObstacleTrial:
 
 def _gait_controller(trial: ObstacleTrial) -> GaitController:
     robot = trial.robot
-    gait = make_library_gait('trial', '', trial.gait, robot)
     limits = JointLimits(robot.position_limit, robot.velocity_limit, STEP_LIMIT)
-    chain = PlanarChain.of_robot(robot)
     config = ControllerConfig(period=trial.period)
+    if not isinstance(trial.gait, WaveGait):
+        return GaitController(robot, _counting_gait(trial), config, limits, lambda _: 0.0)
+    gait = make_library_gait('trial', '', trial.gait, robot)
+    chain = PlanarChain.of_robot(robot)
     if trial.compliance is not None:
         config = replace(config, offset_limit=trial.compliance.law.offset_limit)
     return GaitController(robot, gait, config, limits, lambda q: unbend_heading(chain, q))
 
 
+def _counting_gait(trial: ObstacleTrial) -> LibraryGait:
+    """Give any gait a table by which one cycle is one unit: open loop only counts them."""
+    start = trial.start_phase or 0.0
+    played = trial.gait.on(trial.robot)
+    phases = start + np.linspace(0.0, 2.0 * np.pi, 721)
+    path = np.array([played.at(p, 1.0, (0.0, 0.0)) for p in phases])
+    peak = float(np.abs(np.diff(path, axis=0)).max() * 720 / (2.0 * np.pi))
+    n = trial.gait.joints_of(trial.robot).size
+    unit = np.array([[0.0, 0.0], [0.0, 1.0]])
+    table = Calibration(start, np.array([0.0, 1.0]), unit, np.zeros(2), peak, n)
+    return LibraryGait('trial', '', trial.robot.name, float(np.abs(path).max()), trial.gait, table)
+
+
 def _compliance_controller(trial: ObstacleTrial) -> ComplianceController | None:
     if trial.compliance is None:
         return None
-    config = replace(trial.compliance, k_f=trial.gait.k_f, k_t=trial.gait.k_t)
+    config = replace(trial.compliance, k_f=trial.waves.k_f, k_t=trial.waves.k_t)
     chain = PlanarChain.of_robot(trial.robot)
     motion = QuasiStatic(chain)
 

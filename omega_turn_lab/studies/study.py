@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from omega_turn_lab.studies.rows import Row
 from omega_turn_lab.studies.tasks import DesignTask, PhysicsTask, Result, Task
+from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.gaits.library import KINDS
 from omega_turn_ros.gaits.wave_gait import WaveGait
 from omega_turn_ros.robot import Robot
@@ -73,7 +74,10 @@ class Outcome:
     def gait(self, task: DesignTask) -> WaveGait:
         """Return the designed gait."""
         found = self.designed[task]
-        return KINDS[found['kind']].from_mapping(found['gait'])
+        gait = KINDS[found['kind']].from_mapping(found['gait'])
+        if not isinstance(gait, WaveGait):
+            raise BadInputError('gait', found['kind'], 'a gait of two waves')
+        return gait
 
     def physics(self, task: DesignTask) -> Result | None:
         """Return what its gait did in PyBullet."""

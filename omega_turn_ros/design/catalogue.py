@@ -12,6 +12,7 @@ from omega_turn_ros.design.direct import design_direct
 from omega_turn_ros.design.fourier import design_fourier
 from omega_turn_ros.design.hierarchical import design_hierarchical
 from omega_turn_ros.design.problem import Design, DesignProblem
+from omega_turn_ros.design.sidewinding import SidewindingRecipe
 from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.gaits.library import LibraryGait
 from omega_turn_ros.robot import Robot
@@ -59,6 +60,15 @@ CATALOGUE = (
         method='fourier_2',
     ),
 )
+
+
+SIDEWINDING = SidewindingRecipe()
+
+
+def recipes_for(robot: Robot) -> list[Recipe | SidewindingRecipe]:
+    """Return every gait of the library that the robot can play, within its own joint limit."""
+    planar: list[Recipe | SidewindingRecipe] = [within_limits(r, robot) for r in CATALOGUE]
+    return [*planar, SIDEWINDING] if SIDEWINDING.fits(robot) else planar
 
 
 def within_limits(recipe: Recipe, robot: Robot) -> Recipe:

@@ -26,8 +26,7 @@ from omega_turn_ros.gaits.controller_state import (
 )
 from omega_turn_ros.gaits.library import LibraryGait
 from omega_turn_ros.gaits.limits import JointLimits, limit_command
-from omega_turn_ros.gaits.move import move_between
-from omega_turn_ros.gaits.postures import Postures
+from omega_turn_ros.gaits.move import Move, move_between, move_through
 from omega_turn_ros.gaits.turn_plan import plan_turn
 from omega_turn_ros.robot import Robot
 
@@ -35,6 +34,8 @@ Array = NDArray[np.float64]
 
 AT_REST = 1e-3  # [rad] from the rest shape: nothing to unbend
 SAME_SHAPE = 1e-4  # [rad] between start shapes: no move needed
+NEAR = 0.1  # [rad] a move this short passes no waypoint
+SAME_SCALE = 0.05  # start postures this close are reached without a rest
 NEGLIGIBLE_TURN = 1e-6  # [rad]
 LARGEST_TURN = 1e9  # [rad] two centuries of turning; doubles still resolve its progress
 GATE_TIME = 0.5  # [s] over which a cycle lets amplitude offsets in and, at its end, out again
@@ -52,8 +53,8 @@ class GaitController:
         gait: gait with its calibration.
         config: settings.
         limits: of every command.
-        unbend_heading: heading change [rad] from straightening a posture of yaw angles [rad],
-            shape (N,), along a straight line in joint space.
+        unbend_heading: heading change [rad] of going to rest, along a straight line in joint
+            space, from a posture of the joints the gait moves [rad], shape (N,).
 
     Raises:
         BadInputError: the gait does not fit the robot or its limits.
@@ -67,16 +68,18 @@ class GaitController:
         limits: JointLimits,
         unbend_heading: Callable[[Array], float],
     ) -> None:
-        if gait.calibration.n_joints != robot.n_yaw:
-            count = f'{robot.n_yaw} yaw joints of {robot.name}, not {gait.calibration.n_joints}'
+        self._joints = gait.gait.joints_of(robot)
+        n = self._joints.size
+        if gait.calibration.n_joints != n:
+            moved = f'{n} {gait.gait.moves}'
+            count = f'{moved} of {robot.name}, not {gait.calibration.n_joints}'
             own = 'omega_turn design --all --robot ... makes its own'
             raise BadInputError('gait', gait.name, f'one for the {count}: {own}')
         if gait.theta_max > limits.position + 1e-9:
             raise BadInputError('gait', gait.name, f'joint angles within {limits.position} rad')
         self.robot, self.gait, self.config, self.limits = robot, gait, config, limits
         self._unbend_heading = unbend_heading
-        self._yaw = robot.yaw_indices
-        self._postures = Postures(gait.gait, self._yaw, robot.n_joints)
+        self._played = gait.gait.on(robot)
         # Without feedback the prediction closes exactly; what is left is rounding.
         self._tolerance = config.heading_tolerance if config.heading_feedback else 1e-3
         self._cycle_rate = 2.0 * math.pi / config.period
@@ -170,6 +173,8 @@ class GaitController:
     def _take_offsets(
         self, state: ControllerState, wanted: tuple[float, float], dt: float
     ) -> ControllerState:
+        if not self.gait.gait.complies:
+            return state
         if wanted == state.offsets or any(math.isnan(w) for w in wanted):
             return state
         limit, reach = self.config.offset_limit, self.config.offset_rate * dt
@@ -212,7 +217,7 @@ class GaitController:
             state.scale, state.turned
         )
         offsets = (gate * state.offsets[0], gate * state.offsets[1])
-        target = self._postures.at(table.start_phase + turned, state.scale, offsets)
+        target = self._played.at(table.start_phase + turned, state.scale, offsets)
         changes = {'turned': turned, 'phase_rate': rate, 'gate': gate}
         return changes, target, predicted * state.ratio
 
@@ -253,6 +258,8 @@ class GaitController:
         if abs(rest) <= self._tolerance or state.cycles >= state.budget:
             return self._move_to_rest(state)
         scale = plan_turn(rest, self.gait.calibration, state.ratio).scale
+        if not self.gait.gait.scales_size and abs(scale - state.scale) > SAME_SCALE:
+            return self._move_to_rest(state)  # and plan again from there
         return self._move_to_start(state, scale, bend)
 
     def _judge_cycle(self, state: ControllerState) -> ControllerState:
@@ -264,6 +271,8 @@ class GaitController:
         measured = state.heading.progress - state.cycle_start
         ratio = min(max(measured / predicted, RATIO_RANGE[0]), RATIO_RANGE[1])
         if abs(predicted) < LEARNED_FROM:
+            if not self.gait.gait.scales_size:
+                ratio = max(ratio, state.ground_ratio)  # a small miss is no reason to push harder
             return replace(state, ratio=ratio)
         return replace(state, ratio=ratio, ground_ratio=0.5 * (state.ground_ratio + ratio))
 
@@ -271,7 +280,7 @@ class GaitController:
         self, state: ControllerState, scale: float, bend_now: float
     ) -> ControllerState:
         """Move along one line in shape space to the start shape at `scale`."""
-        target = self._postures.at(self.gait.calibration.start_phase, scale, (0.0, 0.0))
+        target = self._played.at(self.gait.calibration.start_phase, scale, (0.0, 0.0))
         bend = self.gait.calibration.bend_heading_of(scale) - bend_now
         command = self._known(state)
         if np.abs(target - command).max() < SAME_SHAPE:
@@ -282,7 +291,7 @@ class GaitController:
                 turned=0.0,
                 cycle_start=state.heading.progress,
             )
-        move = move_between(command, target, self._move_velocity(), bend)
+        move = self._plan_move(command, target, self._played.waypoint(target), bend)
         return replace(
             state, mode=Mode.MOVING, move=move, to_cycle=True, scale=scale, phase_rate=0.0
         )
@@ -290,12 +299,23 @@ class GaitController:
     def _move_to_rest(self, state: ControllerState) -> ControllerState:
         command = self._known(state)
         heading_change = 0.0
-        if np.abs(command[self._yaw]).max() > AT_REST:
-            heading_change = self._unbend_heading(command[self._yaw])
-        move = move_between(command, np.zeros_like(command), self._move_velocity(), heading_change)
+        rest = self._played.rest
+        ended = state.mode is Mode.CYCLING and state.turned >= 2.0 * math.pi
+        if ended and not self.gait.gait.scales_size:
+            heading_change = -self.gait.calibration.bend_heading_of(state.scale)  # at no cost
+        elif np.abs((command - rest)[self._joints]).max() > AT_REST:
+            heading_change = self._unbend_heading(command[self._joints])
+        move = self._plan_move(command, rest, self._played.waypoint(command), heading_change)
         return replace(
             state, mode=Mode.MOVING, move=move, to_cycle=False, phase_rate=0.0, settling=0.0
         )
+
+    def _plan_move(self, start: Array, end: Array, waypoint: Array | None, bend: float) -> Move:
+        velocity = self._move_velocity()
+        near = np.abs(end - start).max() < NEAR
+        if waypoint is None or near:
+            return move_between(start, end, velocity, bend)
+        return move_through(start, waypoint, end, velocity, bend)
 
     def _helps(self, state: ControllerState, goal: float) -> bool:
         """Whether finishing the cycle under way leads towards the new goal, not past it."""
@@ -317,7 +337,7 @@ class GaitController:
         velocity = (command - previous) / dt if dt > 0.0 else np.zeros_like(command)
         cycling = state.mode is Mode.CYCLING
         phase = self.gait.calibration.start_phase + (state.turned if cycling else 0.0)
-        _, tau_f, _, tau_t = self.gait.gait.waves_at(phase)
+        tau_f, tau_t = self.gait.gait.wave_phases(phase)
         rate = state.phase_rate if cycling else 0.0
         return Output(command, velocity, tau_f, tau_t, rate)
 

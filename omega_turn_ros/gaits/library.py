@@ -9,13 +9,16 @@ from typing import Any
 from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.gaits.calibration import Calibration, calibration_from_mapping
 from omega_turn_ros.gaits.fourier_gait import FourierGait
+from omega_turn_ros.gaits.gait import Gait
+from omega_turn_ros.gaits.sidewinding import Sidewinding
 from omega_turn_ros.gaits.two_wave_gait import TwoWaveGait
 from omega_turn_ros.gaits.wave_gait import WaveGait
 from omega_turn_ros.resources import config_names, fields_apart, read_config
 
-KINDS: dict[str, type[TwoWaveGait] | type[FourierGait]] = {
+KINDS: dict[str, type[TwoWaveGait] | type[FourierGait] | type[Sidewinding]] = {
     'two_wave': TwoWaveGait,
     'fourier': FourierGait,
+    'sidewinding': Sidewinding,
 }
 
 
@@ -28,16 +31,27 @@ class LibraryGait:
         description: one line for people.
         robot: name of the robot it is calibrated for.
         theta_max: largest joint angle over the cycle at scale 1 [rad].
-        gait: the waves. Scale +1 turns counter-clockwise.
-        calibration: angle over amplitude scale and phase.
+        gait: what is played. Scale +1 turns counter-clockwise.
+        calibration: angle over scale and phase.
     """
 
     name: str
     description: str
     robot: str
     theta_max: float
-    gait: WaveGait
+    gait: Gait
     calibration: Calibration
+
+    @property
+    def waves(self) -> WaveGait:
+        """The gait as two waves, which can yield.
+
+        Raises:
+            BadInputError: it is of another kind.
+        """
+        if not isinstance(self.gait, WaveGait):
+            raise BadInputError('gait', self.name, 'a gait of two waves, whose amplitudes yield')
+        return self.gait
 
 
 def gait_names() -> list[str]:

@@ -23,6 +23,8 @@ class Move:
         duration: [s].
         heading_change: predicted turn of the mean body axis over the whole move [rad].
         elapsed: [s].
+        waypoint: angles where the robot halts on the way [rad], shape (n_joints,); None: straight.
+        waypoint_time: when it is there [s].
     """
 
     start: Array
@@ -30,6 +32,8 @@ class Move:
     duration: float
     heading_change: float
     elapsed: float = 0.0
+    waypoint: Array | None = None
+    waypoint_time: float = 0.0
 
     @property
     def done(self) -> bool:
@@ -39,21 +43,42 @@ class Move:
     @property
     def fraction(self) -> float:
         """Share of the way covered, 0..1: 10 s^3 - 15 s^4 + 6 s^5."""
-        s = min(self.elapsed / self.duration, 1.0)
-        return s**3 * (10.0 - 15.0 * s + 6.0 * s * s)
+        return _minimum_jerk(min(self.elapsed / self.duration, 1.0))
 
     @property
     def position(self) -> Array:
         """Joint angles now [rad], shape (n_joints,)."""
         if self.done:
             return self.end
-        result: Array = self.start + self.fraction * (self.end - self.start)
+        if self.waypoint is None:
+            result: Array = self.start + self.fraction * (self.end - self.start)
+        elif self.elapsed < self.waypoint_time:
+            share = _minimum_jerk(self.elapsed / self.waypoint_time)
+            result = self.start + share * (self.waypoint - self.start)
+        else:
+            left = (self.elapsed - self.waypoint_time) / (self.duration - self.waypoint_time)
+            result = self.waypoint + _minimum_jerk(left) * (self.end - self.waypoint)
         return result
 
     def advanced(self, dt: float) -> tuple[Move, float]:
         """Return the move dt [s] later and the heading change predicted meanwhile [rad]."""
         later = replace(self, elapsed=min(self.elapsed + dt, self.duration))
         return later, self.heading_change * (later.fraction - self.fraction)
+
+
+def move_through(
+    start: Array, waypoint: Array, end: Array, velocity: float, heading_change: float
+) -> Move:
+    """Plan two moves one after the other; the robot halts at the waypoint."""
+    first, second = (
+        move_between(a, b, velocity, 0.0) for a, b in ((start, waypoint), (waypoint, end))
+    )
+    duration = first.duration + second.duration
+    return Move(start, end, duration, heading_change, 0.0, waypoint, first.duration)
+
+
+def _minimum_jerk(s: float) -> float:
+    return s**3 * (10.0 - 15.0 * s + 6.0 * s * s)
 
 
 def move_between(start: Array, end: Array, velocity: float, heading_change: float) -> Move:

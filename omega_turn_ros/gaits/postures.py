@@ -1,19 +1,21 @@
-"""One gait on one robot, a single phase at a time: what a control tick needs, without delay."""
+"""A two-wave gait on one robot, a single phase at a time, without delay."""
 
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from omega_turn_ros.gaits.wave_gait import WaveGait
+if TYPE_CHECKING:
+    from omega_turn_ros.gaits.wave_gait import WaveGait
 
 Array = NDArray[np.float64]
 
 
 class Postures:
-    """The same angles as `WaveGait.angles`, for scalars.
+    """A `PlayedGait` of two waves: the same angles as `WaveGait.angles`, for scalars.
 
     By the sum formula each wave is sin(tau) cos(2 pi k i/N) + cos(tau) sin(2 pi k i/N). The
     factors of the joints never change, so a posture is one product of 4 numbers and a table.
@@ -26,11 +28,15 @@ class Postures:
 
     def __init__(self, gait: WaveGait, yaw_indices: NDArray[np.intp], n_joints: int) -> None:
         self._gait = gait
+        self.rest: Array = np.zeros(n_joints)
         n = yaw_indices.size
         position = 2.0 * np.pi * np.arange(1, n + 1) / n
         waves = (gait.k_f * position, gait.k_t * position)
         self._table = np.zeros((4, n_joints))
         self._table[:, yaw_indices] = [f(wave) for wave in waves for f in (np.cos, np.sin)]
+
+    def waypoint(self, posture: Array) -> None:
+        """See `PlayedGait.waypoint`."""
 
     def at(self, phase: float, scale: float, offsets: tuple[float, float]) -> Array:
         """Joint angles [rad], shape (n_joints,).

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from typing import Any
+from abc import abstractmethod
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from omega_turn_ros.gaits.gait import Gait
+from omega_turn_ros.gaits.postures import Postures
 from omega_turn_ros.gaits.two_wave import two_wave_angles
+from omega_turn_ros.robot import Robot
 
 Array = NDArray[np.float64]
 
 
-class WaveGait(ABC):
+class WaveGait(Gait):
     """A closed path in [A_f, tau_f, A_t, tau_t], run through by the gait phase tau_t.
 
     Attributes:
@@ -23,8 +26,25 @@ class WaveGait(ABC):
 
     __slots__ = ()
 
+    complies: ClassVar[bool] = True
+    scales_size: ClassVar[bool] = True
+    moves: ClassVar[str] = 'yaw joints'
+
     k_f: float
     k_t: float
+
+    def joints_of(self, robot: Robot) -> NDArray[np.intp]:
+        """See `Gait.joints_of`."""
+        return robot.yaw_indices
+
+    def on(self, robot: Robot) -> Postures:
+        """See `Gait.on`."""
+        return Postures(self, robot.yaw_indices, robot.n_joints)
+
+    def wave_phases(self, phase: float) -> tuple[float, float]:
+        """See `Gait.wave_phases`."""
+        _, tau_f, _, tau_t = self.waves_at(phase)
+        return tau_f, tau_t
 
     @abstractmethod
     def phases(self, phase: ArrayLike) -> tuple[Array, Array]:
@@ -41,10 +61,6 @@ class WaveGait(ABC):
     @abstractmethod
     def scaled(self, factor: float) -> WaveGait:
         """Return the gait with both amplitudes multiplied."""
-
-    @abstractmethod
-    def to_mapping(self) -> dict[str, Any]:
-        """Parameters for a library file."""
 
     def mirrored(self) -> WaveGait:
         """Return the gait that turns the other way: both amplitudes negated."""

@@ -51,7 +51,7 @@ def solve_balance(points: Array, velocities: Array, weights: Array) -> Array:
     Args:
         points: [m], shape (B, P, 2).
         velocities: at xi = 0 [m/s], shape (B, P, 2).
-        weights: friction strengths, any unit, shape (P,).
+        weights: friction strengths, any unit, shape (P,), or (B, P) where the load shifts.
 
     Returns:
         xi, shape (B, 3).
@@ -68,7 +68,7 @@ def solve_balance(points: Array, velocities: Array, weights: Array) -> Array:
     size = float(np.abs(points).max())
     p = points[moving] / size
     v = velocities[moving] / speed[moving, None, None]
-    w = weights / weights.sum()
+    w = _shares(weights) if weights.ndim == 1 else _shares(weights[moving])
     solution = np.zeros((p.shape[0], 3))
     for epsilon in SMOOTHING:
         solution = _newton(p, v, w, solution, epsilon)
@@ -79,8 +79,25 @@ def solve_balance(points: Array, velocities: Array, weights: Array) -> Array:
 
 def _mean_speed(velocities: Array, weights: Array) -> Array:
     """Weighted mean of |v_x| + |v_y| of each shape, shape (B,)."""
-    mean: Array = np.einsum('j,bjx->b', weights / weights.sum(), np.abs(velocities))
+    subscripts = 'j,bjx->b' if weights.ndim == 1 else 'bj,bjx->b'
+    mean: Array = np.einsum(subscripts, _shares(weights), np.abs(velocities))
     return mean
+
+
+def _shares(weights: Array) -> Array:
+    share: Array = weights / weights.sum(axis=-1, keepdims=True)
+    return share
+
+
+def _rows(w: Array, which: NDArray[np.intp]) -> Array:
+    """Weights of some of the shapes, where each has its own."""
+    return w if w.ndim == 1 else w[which]
+
+
+def _summed(values: Array, w: Array) -> Array:
+    """Weighted sums of (B, P) over P, shape (B,)."""
+    result: Array = values @ w if w.ndim == 1 else np.einsum('bp,bp->b', values, w)
+    return result
 
 
 def _newton(p: Array, v: Array, w: Array, xi: Array, epsilon: float) -> Array:
@@ -88,14 +105,15 @@ def _newton(p: Array, v: Array, w: Array, xi: Array, epsilon: float) -> Array:
     xi = xi.copy()
     open_ = np.arange(xi.shape[0])
     for _ in range(NEWTON_STEPS):
-        gradient, hessian = _derivatives(p[open_], v[open_], w, xi[open_], epsilon)
+        gradient, hessian = _derivatives(p[open_], v[open_], _rows(w, open_), xi[open_], epsilon)
         unfinished = np.abs(gradient).max(axis=1) > GRADIENT_TOLERANCE
         open_ = open_[unfinished]
         if open_.size == 0:
             return xi
         step = np.linalg.solve(hessian[unfinished], -gradient[unfinished][..., None])[..., 0]
-        xi[open_] = _line_search(p[open_], v[open_], w, xi[open_], step, epsilon)
-    gradient, _ = _derivatives(p[open_], v[open_], w, xi[open_], epsilon)
+        rows = (p[open_], v[open_], _rows(w, open_), xi[open_])
+        xi[open_] = _line_search(*rows, step, epsilon)
+    gradient, _ = _derivatives(p[open_], v[open_], _rows(w, open_), xi[open_], epsilon)
     worst = float(np.abs(gradient).max())
     # Near the end rounding in the objective, not the optimum, can stop the line search.
     if worst > 1e3 * GRADIENT_TOLERANCE:
@@ -117,7 +135,7 @@ def slip_velocities(p: Array, v: Array, xi: Array) -> Array:
 
 def _dissipation(p: Array, v: Array, w: Array, xi: Array, epsilon: float) -> Array:
     slip = slip_velocities(p, v, xi)
-    return np.sqrt((slip**2).sum(axis=-1) + epsilon**2) @ w
+    return _summed(np.sqrt((slip**2).sum(axis=-1) + epsilon**2), w)
 
 
 def _derivatives(p: Array, v: Array, w: Array, xi: Array, epsilon: float) -> tuple[Array, Array]:
@@ -128,7 +146,7 @@ def _derivatives(p: Array, v: Array, w: Array, xi: Array, epsilon: float) -> tup
     unit = slip / norm[..., None]
     ux, uy = unit[..., 0], unit[..., 1]
     lever = x * uy - y * ux  # (z x p) . unit
-    gradient = np.stack([ux @ w, uy @ w, lever @ w], axis=-1)
+    gradient = np.stack([_summed(u, w) for u in (ux, uy, lever)], axis=-1)
     k = w / norm
     columns = ((1.0, 0.0, ux, -y), (0.0, 1.0, uy, x))
     hessian = np.empty((p.shape[0], 3, 3))

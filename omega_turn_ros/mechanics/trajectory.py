@@ -72,6 +72,13 @@ def integrate_twists(twists: ArrayLike) -> Array:
     return pose
 
 
+def path_through(start: ArrayLike, waypoint: ArrayLike | None, end: ArrayLike) -> Array:
+    """Straight lines from shape to shape, past a waypoint if there is one [rad], (T, N)."""
+    if waypoint is None:
+        return straight_path(start, end)
+    return np.concatenate([straight_path(start, waypoint), straight_path(waypoint, end)[1:]])
+
+
 def straight_path(start: ArrayLike, end: ArrayLike, steps: int = 40) -> Array:
     """Straight line between two shapes [rad], shape (steps + 1, N)."""
     a, b = np.asarray(start, float), np.asarray(end, float)

@@ -76,7 +76,7 @@ def make_compliance(values: Mapping[str, Any], robot: Robot) -> ComplianceContro
     Raises:
         BadInputError: a value or the gait is refused.
     """
-    gait = load_gait(values['gait']).gait
+    gait = load_gait(values['gait']).waves
     law = AdmittanceConfig(
         tuple(values['mass']),
         tuple(values['damping']),

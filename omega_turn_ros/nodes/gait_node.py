@@ -112,6 +112,7 @@ class GaitNode(Node):
     def _apply(self, values: Mapping[str, Any]) -> None:
         self._controller = make_controller(values, self._robot)
         gait = self._controller.gait
+        self._compliant = values['use_compliance'] and gait.gait.complies
         if gait.robot != self._robot.name:
             text = f'gait {gait.name} is calibrated for robot {gait.robot}, not this one'
             self._health.warn('gait', f'{text}: predicted angles are off')
@@ -156,7 +157,7 @@ class GaitNode(Node):
     def _missing(self) -> set[str]:
         """Inputs of the present instant that are still to come."""
         needed = {'odom'} if self._settings['heading_feedback'] == 'odom' else set()
-        if self._settings['use_compliance']:
+        if self._compliant:
             needed.add('wave_amplitudes')
         return {n for n in needed if self._stamps[n] != self._stamps['joint_states']}
 
@@ -205,7 +206,7 @@ class GaitNode(Node):
                 self._amplitudes_seen.mark()
         self._heading = heading
         heard = self._amplitudes_seen.fresh and 'wave_amplitudes' not in self._absent
-        compliant = self._settings['use_compliance'] and heard
+        compliant = self._compliant and heard
         self._inputs = Inputs(
             positions,
             self._states_seen.fresh,

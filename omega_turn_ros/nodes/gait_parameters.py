@@ -6,13 +6,12 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from omega_turn_ros.design.rest import heading_to_rest
 from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.gaits.controller import GaitController
 from omega_turn_ros.gaits.controller_state import ControllerConfig
 from omega_turn_ros.gaits.library import load_gait
 from omega_turn_ros.gaits.limits import JointLimits
-from omega_turn_ros.mechanics.chain import PlanarChain
-from omega_turn_ros.mechanics.posture import unbend_heading
 from omega_turn_ros.nodes.parameters import ParameterSpec as Spec
 from omega_turn_ros.robot import Robot
 
@@ -101,5 +100,4 @@ def make_controller(values: Mapping[str, Any], robot: Robot) -> GaitController:
     if limits.step < slowest:
         expected = f'at least {slowest:.3g} rad, the gait at {values["rate"]:g} Hz'
         raise BadInputError('parameter step_limit', limits.step, expected)
-    chain = PlanarChain.of_robot(robot)
-    return GaitController(robot, gait, config, limits, lambda q: unbend_heading(chain, q))
+    return GaitController(robot, gait, config, limits, heading_to_rest(robot, gait.gait))

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from omega_turn_ros.design.calibrate import POINTS_PER_LINK
-from omega_turn_ros.design.catalogue import CATALOGUE
+from omega_turn_ros.design.catalogue import CATALOGUE, recipes_for
 from omega_turn_ros.gaits.library import gait_names, load_gait
 from omega_turn_ros.mechanics.chain import PlanarChain
 from omega_turn_ros.mechanics.quasi_static import QuasiStatic
@@ -19,20 +19,21 @@ from omega_turn_ros.robot import load_robot
 ROBOT = load_robot('limbless16')
 CHAIN = PlanarChain.of_robot(ROBOT, POINTS_PER_LINK)
 ONE_DEGREE = math.radians(1.0)
+TWO_WAVE = [recipe.name for recipe in CATALOGUE]
 
 # An independent optimiser's best on the same body [deg per cycle].
 FLOORS = {'omega': 92.0, 'omega_75': 50.0, 'omega_60': 26.0, 'offset': 54.0}
 
 
 def test_the_library_is_what_the_catalogue_says() -> None:
-    assert sorted(gait_names()) == sorted(recipe.name for recipe in CATALOGUE)
+    assert sorted(gait_names()) == sorted(recipe.name for recipe in recipes_for(ROBOT))
     for recipe in CATALOGUE:
         shipped = load_gait(recipe.name)
         assert (shipped.gait.k_f, shipped.gait.k_t) == (recipe.k_f, recipe.k_t)
         assert shipped.theta_max <= math.radians(recipe.theta_max_deg) + 1e-4
 
 
-@pytest.mark.parametrize('name', gait_names())
+@pytest.mark.parametrize('name', TWO_WAVE)
 def test_a_gait_keeps_its_limit_and_clear_of_itself_at_every_scale(name: str) -> None:
     entry = load_gait(name)
     phases = np.linspace(0.0, 2.0 * np.pi, 5000)
@@ -42,7 +43,7 @@ def test_a_gait_keeps_its_limit_and_clear_of_itself_at_every_scale(name: str) ->
         assert self_clearance(CHAIN, ROBOT.module_width, scale * path).min() > -1e-5
 
 
-@pytest.mark.parametrize('name', gait_names())
+@pytest.mark.parametrize('name', TWO_WAVE)
 def test_predicted_angle_is_the_integrated_one_at_any_scale(name: str) -> None:
     entry = load_gait(name)
     table, motion = entry.calibration, QuasiStatic(CHAIN)
@@ -55,7 +56,7 @@ def test_predicted_angle_is_the_integrated_one_at_any_scale(name: str) -> None:
         assert abs(middle - heading[240]) < 2.0 * ONE_DEGREE
 
 
-@pytest.mark.parametrize('name', gait_names())
+@pytest.mark.parametrize('name', TWO_WAVE)
 def test_angle_rises_with_the_scale_without_a_jump(name: str) -> None:
     table = load_gait(name).calibration
     angles = np.array([table.angle_of(s) for s in np.linspace(0.0, 1.0, 2001)])

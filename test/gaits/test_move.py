@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from omega_turn_ros.gaits.move import SHORTEST, move_between
+from omega_turn_ros.gaits.move import SHORTEST, move_between, move_through
 
 SEEDED = settings(derandomize=True, deadline=None, max_examples=100)
 START, END = np.array([0.2, -0.4, 0.0]), np.array([1.0, 0.5, 0.0])
@@ -62,3 +62,19 @@ def test_move_to_the_same_posture_takes_the_shortest_time() -> None:
     assert move.duration == SHORTEST
     np.testing.assert_array_equal(move.advanced(0.05)[0].position, START)
     assert math.isfinite(move.fraction)
+
+
+def test_a_move_through_a_waypoint_halts_there_and_keeps_its_speed() -> None:
+    start, waypoint, end = np.zeros(3), np.array([1.0, 0.0, -0.5]), np.array([1.0, 0.3, -0.5])
+    move = move_through(start, waypoint, end, 0.8, 0.2)
+    dt, positions, turned = 0.01, [move.position], 0.0
+    while not move.done:
+        move, change = move.advanced(dt)
+        positions.append(move.position)
+        turned += change
+    path = np.array(positions)
+    speeds = np.abs(np.diff(path, axis=0)) / dt
+    assert 0.75 < speeds.max() <= 0.8 + 1e-9
+    assert np.abs(path - waypoint).max(axis=1).min() < 1e-3
+    np.testing.assert_array_equal(path[-1], end)
+    assert turned == pytest.approx(0.2)

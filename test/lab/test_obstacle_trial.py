@@ -95,3 +95,32 @@ def test_a_turn_of_no_cycle_is_refused() -> None:
 def test_trials_that_differ_in_the_law_have_different_names_in_the_store() -> None:
     names = {repr(replace(OPEN, compliance=c)) for c in (None, YIELDING, PUSHING)}
     assert len(names) == 3
+
+
+SIDEWINDING = load_gait('sidewinding')
+FREQUENCY_TURN = ObstacleTrial(
+    OPEN.robot,
+    SIDEWINDING.gait,
+    cycles=1,
+    start_phase=SIDEWINDING.calibration.start_phase,
+)
+
+
+@pytest.mark.slow
+def test_a_frequency_turn_takes_its_calibrated_angle_open_loop() -> None:
+    assert pickle.loads(pickle.dumps(FREQUENCY_TURN)) == FREQUENCY_TURN
+    result = FREQUENCY_TURN.run()
+    expected = np.degrees(SIDEWINDING.calibration.largest_angle)
+    assert result['angle_deg'] == pytest.approx(expected, rel=0.1)
+    assert result['limits_broken'] == 0 and len(result['cycle_angles_deg']) == 1
+
+
+@pytest.mark.parametrize(
+    ('change', 'named'),
+    [({'compliance': YIELDING}, 'compliance'), ({'start_phase': None}, 'start_phase')],
+)
+def test_what_does_not_go_with_a_gait_is_refused(change: dict[str, object], named: str) -> None:
+    with pytest.raises(BadInputError, match=rf'^{named}: '):
+        replace(FREQUENCY_TURN, **change)
+    with pytest.raises(BadInputError, match=r'^start_phase: '):
+        replace(OPEN, start_phase=0.0)

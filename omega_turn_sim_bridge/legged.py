@@ -126,7 +126,7 @@ def _add_inertia(
     xx, yy, zz = (edge**2 for edge in size)
     axes = {'ixx': yy + zz, 'iyy': xx + zz, 'izz': xx + yy}
     values = {name: str(mass * sum_ / 12.0 + rotor) for name, sum_ in axes.items()}
-    ET.SubElement(inertial, 'inertia', **values, ixy='0', ixz='0', iyz='0')
+    ET.SubElement(inertial, 'inertia', {**values, 'ixy': '0', 'ixz': '0', 'iyz': '0'})
 
 
 def _add_box(

@@ -96,8 +96,8 @@ def _draw_robot(axes: Axes, motion: LeggedMotion, q: Array, place: Array, frame:
     links = motion.chain.state(q[robot.yaw_indices], np.zeros(robot.n_yaw))
     left = np.stack([-np.sin(links.link_angles), np.cos(links.link_angles)], axis=-1)
     hips = _hips(links.points, left, robot.legs.hip_offset)
-    feet = motion.feet(q)
-    for hip, foot, down in zip(hips @ frame + place, feet @ frame + place, motion.contact(q)):
+    feet = motion.feet.places(q)
+    for hip, foot, down in zip(hips @ frame + place, feet @ frame + place, motion.feet.down(q)):
         axes.plot(*np.stack([hip, foot]).T, color='0.45', lw=0.8, zorder=2)
         if down:
             axes.plot(*foot, 'o', color=COLOURS[1], ms=1.8, mew=0.0, zorder=3)

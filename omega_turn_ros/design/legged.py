@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
+from omega_turn_ros.design.calibrate import SCALES, calibrate_postures
 from omega_turn_ros.errors import BadInputError
-from omega_turn_ros.gaits.calibration import Calibration
 from omega_turn_ros.gaits.legged import LeggedGait
+from omega_turn_ros.gaits.library import LibraryGait
 from omega_turn_ros.mechanics.legged import LeggedMotion
-from omega_turn_ros.mechanics.trajectory import straight_path
 from omega_turn_ros.robot import LeggedRobot
 
-SCALES = 21
-PHASES = 24  # table columns per cycle
-STEPS_PER_PHASE = 15  # integration steps between two columns
+SAMPLES = 720  # postures of a cycle
 LARGEST_A_3 = math.radians(20.0)  # the paper's
 
 
@@ -35,28 +34,51 @@ def walking_gait(n_pairs: int = 5) -> LeggedGait:
     )
 
 
-def calibrate_legged(gait: LeggedGait, robot: LeggedRobot) -> Calibration:
-    """Integrate the gait at every scale of A_3, with the loads a level body puts on its feet.
+@dataclass(frozen=True, slots=True)
+class LeggedRecipe:
+    """Walking to make ready for a robot with legs.
 
-    Args:
-        gait: A_3 > 0 must turn counter-clockwise.
-        robot: the robot.
+    Attributes:
+        name: of the library file.
+        description: one line for people.
+    """
+
+    name: str = 'legged'
+    description: str = 'Walking on legs that turns with a bend of the body, A_3 = 20 deg'
+
+
+@dataclass(frozen=True, slots=True)
+class LeggedDesign:
+    """What was made ready.
+
+    Attributes:
+        gait: turning counter-clockwise at scale +1.
+        angle: per cycle at scale +-1, mean of both sides [rad].
+        clearance: smallest distance between neighbouring feet of a side [m].
+        evaluations: cycles integrated.
+    """
+
+    gait: LeggedGait
+    angle: float
+    clearance: float
+    evaluations: int
+
+
+def design_legged(recipe: LeggedRecipe, robot: LeggedRobot) -> tuple[LeggedDesign, LibraryGait]:
+    """Calibrate the walking gait on A_3, with the loads that a level body puts on its feet.
 
     Raises:
-        BadInputError: the gait does not fit the robot, or turns clockwise or not at all.
+        BadInputError: the robot bends too little, or would turn clockwise.
     """
-    if gait.n_joints != robot.n_joints:
-        raise BadInputError('n_pairs', gait.n_pairs, f'{robot.n_pairs}, those of {robot.name}')
+    gait = walking_gait(robot.n_pairs)
+    path = gait.angles(np.linspace(0.0, 2.0 * np.pi, SAMPLES + 1))
+    theta_max = float(np.abs(path).max())
+    if theta_max > robot.position_limit:
+        raise BadInputError('robot', robot.name, f'joints that reach {theta_max:.3g} rad')
     motion = LeggedMotion(robot, 'static')
-    steps = PHASES * STEPS_PER_PHASE
-    phases = 2.0 * np.pi * np.arange(steps + 1) / steps
-    scales = np.linspace(0.0, 1.0, SCALES)
-    heading = np.zeros((SCALES, PHASES + 1))
-    bend = np.zeros(SCALES)
-    straight = motion.turn(straight_path(np.zeros(robot.n_joints), gait.angles(0.0, 0.0)))
-    for k in range(1, SCALES):
-        heading[k] = motion.heading_along(gait.angles(phases, scales[k]))[::STEPS_PER_PHASE]
-        start = straight_path(np.zeros(robot.n_joints), gait.angles(0.0, scales[k]))
-        bend[k] = motion.turn(start) - straight
-    peak = float(np.abs(np.diff(gait.angles(phases), axis=0)).max() * steps / (2.0 * np.pi))
-    return Calibration(0.0, scales, heading, bend, peak, robot.n_joints)
+    calibration = calibrate_postures(gait.on(robot), robot.n_joints, motion.heading_along, 0.0)
+    feet = motion.feet.places(path).reshape(-1, robot.n_pairs, 2, 2)
+    clearance = float(np.linalg.norm(np.diff(feet, axis=1), axis=-1).min())
+    design = LeggedDesign(gait, calibration.largest_angle, clearance, 2 * SCALES)
+    entry = LibraryGait(recipe.name, recipe.description, robot.name, theta_max, gait, calibration)
+    return design, entry

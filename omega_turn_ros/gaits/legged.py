@@ -38,6 +38,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from omega_turn_ros.errors import BadInputError
+from omega_turn_ros.gaits.gait import Gait
+from omega_turn_ros.robot import LeggedRobot, Robot
 
 Array = NDArray[np.float64]
 
@@ -47,7 +49,7 @@ JOINTS_PER_PAIR = 5  # swing and lift of the left leg, of the right leg, and the
 
 
 @dataclass(frozen=True, slots=True)
-class LeggedGait:
+class LeggedGait(Gait):
     """A walking gait that turns with the amplitude of its offset.
 
     Attributes:
@@ -172,6 +174,14 @@ class LeggedGait:
         result[..., :-1, -1] = body
         return result.reshape(*body.shape[:-1], -1)[..., :-1]
 
+    def on(self, robot: Robot) -> LeggedPostures:
+        """See `Gait.on`."""
+        return LeggedPostures(self, robot)
+
+    def wave_phases(self, phase: float) -> tuple[float, float]:
+        """Phases of the body wave at its head, phi_b, and of the turning offset [rad]."""
+        return phase - (self.xi / self.n_pairs + 0.5) * math.pi, phase + self.phi_3
+
     def to_mapping(self) -> dict[str, Any]:
         """Parameters for a library file."""
         return asdict(self)
@@ -187,3 +197,30 @@ class LeggedGait:
             expected = f'exactly the fields {sorted(cls.__slots__)}'
             raise BadInputError('gait parameters', parameters, expected)
         return cls(**parameters)
+
+
+class LeggedPostures:
+    """A `PlayedGait` of a robot with legs. Between turns it stands in mid-stride, at phase 0.
+
+    There every cycle begins and ends, whatever its scale, so cycles follow one another at once.
+
+    Args:
+        gait: the waves.
+        robot: with as many leg pairs.
+
+    Raises:
+        BadInputError: it has no legs, or another number of pairs.
+    """
+
+    def __init__(self, gait: LeggedGait, robot: Robot) -> None:
+        if not isinstance(robot, LeggedRobot) or robot.n_pairs != gait.n_pairs:
+            raise BadInputError('robot', robot.name, f'one with {gait.n_pairs} leg pairs')
+        self._gait = gait
+        self.rest: Array = gait.angles(0.0, 0.0)
+
+    def at(self, phase: float, scale: float, offsets: tuple[float, float]) -> Array:
+        """See `PlayedGait.at`; offsets are ignored."""
+        return self._gait.angles(phase, scale)
+
+    def waypoint(self, posture: Array) -> None:
+        """See `PlayedGait.waypoint`: straight there."""

@@ -10,15 +10,17 @@ from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.gaits.calibration import Calibration, calibration_from_mapping
 from omega_turn_ros.gaits.fourier_gait import FourierGait
 from omega_turn_ros.gaits.gait import Gait
+from omega_turn_ros.gaits.legged import LeggedGait
 from omega_turn_ros.gaits.sidewinding import Sidewinding
 from omega_turn_ros.gaits.two_wave_gait import TwoWaveGait
 from omega_turn_ros.gaits.wave_gait import WaveGait
 from omega_turn_ros.resources import config_names, fields_apart, read_config
 
-KINDS: dict[str, type[TwoWaveGait] | type[FourierGait] | type[Sidewinding]] = {
+KINDS: dict[str, type[TwoWaveGait] | type[FourierGait] | type[Sidewinding] | type[LeggedGait]] = {
     'two_wave': TwoWaveGait,
     'fourier': FourierGait,
     'sidewinding': Sidewinding,
+    'legged': LeggedGait,
 }
 
 

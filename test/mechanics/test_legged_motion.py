@@ -39,12 +39,12 @@ def cycle(steps: int = 360) -> np.ndarray:
 def test_feet_of_the_straight_robot_stand_beside_the_middles_of_its_segments(
     motion: LeggedMotion,
 ) -> None:
-    feet = motion.feet(np.zeros(24)).reshape(5, 2, 2)
+    feet = motion.feet.places(np.zeros(24)).reshape(5, 2, 2)
     np.testing.assert_allclose(feet[..., 0], np.tile([[0.36], [0.18], [0], [-0.18], [-0.36]], 2))
     np.testing.assert_allclose(feet[..., 1], np.tile([0.15, -0.15], (5, 1)))
     swung = np.zeros(24)
     swung[[0, 2]] = math.radians(30)  # left and right leg 1 forward
-    ahead = motion.feet(swung).reshape(5, 2, 2) - feet
+    ahead = motion.feet.places(swung).reshape(5, 2, 2) - feet
     np.testing.assert_allclose(ahead[0, :, 0], 0.1 * math.sin(math.radians(30)))
     assert ahead[0, 0, 1] < 0.0 < ahead[0, 1, 1]
 
@@ -53,8 +53,8 @@ def test_foot_velocities_are_the_derivative_of_foot_positions(motion: LeggedMoti
     rng = np.random.default_rng(0)
     q, dq = rng.uniform(-0.6, 0.6, (2, 20, 24))
     h = 1e-6
-    difference = (motion.feet(q + h * dq) - motion.feet(q - h * dq)) / (2.0 * h)
-    np.testing.assert_allclose(motion._feet(q, dq)[1], difference, atol=1e-8)
+    difference = (motion.feet.places(q + h * dq) - motion.feet.places(q - h * dq)) / (2.0 * h)
+    np.testing.assert_allclose(motion.feet.moving(q, dq)[1], difference, atol=1e-8)
 
 
 def test_body_velocity_is_where_friction_dissipates_least(motion: LeggedMotion) -> None:
@@ -62,8 +62,8 @@ def test_body_velocity_is_where_friction_dissipates_least(motion: LeggedMotion) 
     phases = np.linspace(0.1, 2.0 * np.pi, 9, endpoint=False)
     q, dq = GAIT.angles(phases), (GAIT.angles(phases + 1e-5) - GAIT.angles(phases - 1e-5)) / 2e-5
     found = motion.body_velocity(q, dq)
-    points, velocities = motion._feet(q, dq)
-    loads = motion.loads(q)
+    points, velocities = motion.feet.moving(q, dq)
+    loads = motion.feet.loads(q)
 
     def dissipation(xi: np.ndarray, k: int) -> float:
         slip = slip_velocities(points[k : k + 1], velocities[k : k + 1], xi[None])[0]
@@ -80,8 +80,8 @@ def test_compiled_balance_agrees_with_the_plain_one(motion: LeggedMotion) -> Non
     """A foot in a shape of its own has to stick at times, which few points do often."""
     q = GAIT.angles(cycle())
     middles, steps = 0.5 * (q[1:] + q[:-1]), np.diff(q, axis=0)
-    points, velocities = motion._feet(middles, steps)
-    loads = motion.loads(middles)
+    points, velocities = motion.feet.moving(middles, steps)
+    loads = motion.feet.loads(middles)
     found = motion.body_velocity(middles, steps)
     plain = np.array(
         [
@@ -96,7 +96,7 @@ def test_legs_in_the_air_do_not_matter(motion: LeggedMotion) -> None:
     q = GAIT.angles(1.0)
     dq = GAIT.angles(1.001) - q
     moved = dq.copy()
-    in_air = np.flatnonzero(~motion.contact(q))
+    in_air = np.flatnonzero(~motion.feet.down(q))
     swing = np.flatnonzero(np.array(motion.robot.joint_axes) == 'swing')[in_air]
     moved[swing] += 0.3
     np.testing.assert_allclose(motion.body_velocity(q, moved), motion.body_velocity(q, dq))
@@ -147,7 +147,7 @@ def test_displacement_converges_with_the_step(motion: LeggedMotion) -> None:
 def test_static_loads_hold_the_body_level(robot: LeggedRobot) -> None:
     motion = LeggedMotion(robot, 'static')
     q = GAIT.angles(cycle())
-    feet, down = motion.feet(q), motion.contact(q)
+    feet, down = motion.feet.places(q), motion.feet.down(q)
     loads = static_loads(feet, down)
     assert (loads >= 0.0).all() and (loads[~down] == 0.0).all()
     np.testing.assert_allclose(loads.sum(axis=-1), 1.0)

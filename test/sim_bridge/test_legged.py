@@ -90,7 +90,7 @@ def test_feet_bear_what_a_level_body_puts_on_them(robot: LeggedRobot) -> None:
             simulation.step(2)
         simulation.step(400)
         loads = loads_of(simulation, robot)
-    model = LeggedMotion(robot, 'static').loads(posture) * robot.weight
+    model = LeggedMotion(robot, 'static').feet.loads(posture) * robot.weight
     np.testing.assert_allclose(loads, model, atol=0.03 * robot.weight)
 
 

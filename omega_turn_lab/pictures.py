@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from omega_turn_lab.body_shapes import (
     body_outlines,
     body_polygons,
+    leg_lines,
     nice_step,
     sampled_at,
     turned_deg,
@@ -114,10 +115,12 @@ def _draw_bodies(
 
     colours, scale = _colours(record.time)
     ends = {0: 'start', len(record.time) - 1: 'end'}
+    legs, down = leg_lines(record, robot)
     for place, index in enumerate(chosen):
         colour = colours(scale(record.time[index]))
         solid = index in ends
         order = 3.0 if solid else 2.0 + 0.1 * place  # the later covers the earlier
+        _draw_legs(axes, legs[index], down[index], colour, order)
         _draw_body(axes, outlines[index], robot.module_width, colour, solid, order)
     for index, word in ends.items():
         colour = colours(scale(record.time[index]))
@@ -133,6 +136,16 @@ def _draw_bodies(
     axes.set_xlabel('x [m]')
     axes.set_ylabel('y [m]')
     axes.set_title('from above; colour is time, see the dots at right', loc='left', color='0.4')
+
+
+def _draw_legs(
+    axes: Axes, legs: Array, down: NDArray[np.bool_], colour: Any, order: float
+) -> None:
+    """Legs of one body, with a dot under each foot that is down."""
+    for leg, stands in zip(legs, down):
+        axes.plot(*leg.T, color=colour, linewidth=0.9, zorder=order)
+        if stands:
+            axes.plot(*leg[1], 'o', color=colour, markersize=2.0, zorder=order)
 
 
 def _draw_body(

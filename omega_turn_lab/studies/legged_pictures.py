@@ -93,9 +93,7 @@ def _draw_robot(axes: Axes, motion: LeggedMotion, q: Array, place: Array, frame:
     """
     robot = motion.robot
     body = motion.chain.outline(q[robot.yaw_indices], np.zeros(3)) @ frame + place
-    links = motion.chain.state(q[robot.yaw_indices], np.zeros(robot.n_yaw))
-    left = np.stack([-np.sin(links.link_angles), np.cos(links.link_angles)], axis=-1)
-    hips = _hips(links.points, left, robot.legs.hip_offset)
+    hips = motion.feet.hips(q)
     feet = motion.feet.places(q)
     for hip, foot, down in zip(hips @ frame + place, feet @ frame + place, motion.feet.down(q)):
         axes.plot(*np.stack([hip, foot]).T, color='0.45', lw=0.8, zorder=2)
@@ -103,11 +101,6 @@ def _draw_robot(axes: Axes, motion: LeggedMotion, q: Array, place: Array, frame:
             axes.plot(*foot, 'o', color=COLOURS[1], ms=1.8, mew=0.0, zorder=3)
     axes.plot(*body.T, color=PATH_COLOUR, lw=2.2, solid_capstyle='round', zorder=4)
     axes.plot(*body[0], 'o', color=PATH_COLOUR, ms=3.2, mew=0.0, zorder=4)
-
-
-def _hips(centres: Array, left: Array, offset: float) -> Array:
-    """Swing axes, left before right, head first [m], shape (2 n, 2)."""
-    return np.stack([centres + offset * left, centres - offset * left], axis=1).reshape(-1, 2)
 
 
 def _draw_shapes(axes: Axes, motion: LeggedMotion, gait: LeggedGait) -> None:

@@ -15,6 +15,7 @@ from omega_turn_ros.gaits.sidewinding import Sidewinding
 from omega_turn_ros.gaits.two_wave_gait import TwoWaveGait
 from omega_turn_ros.gaits.wave_gait import WaveGait
 from omega_turn_ros.resources import config_names, fields_apart, read_config
+from omega_turn_ros.robot import LeggedRobot, Robot
 
 KINDS: dict[str, type[TwoWaveGait] | type[FourierGait] | type[Sidewinding] | type[LeggedGait]] = {
     'two_wave': TwoWaveGait,
@@ -59,6 +60,11 @@ class LibraryGait:
 def gait_names() -> list[str]:
     """Names of the shipped gaits."""
     return config_names('gaits')
+
+
+def default_gait(robot: Robot) -> str:
+    """Name of the shipped gait that a robot turns with unless told otherwise."""
+    return 'legged' if isinstance(robot, LeggedRobot) else 'omega'
 
 
 def load_gait(name: str) -> LibraryGait:

@@ -48,6 +48,16 @@ class Feet:
         q = np.asarray(angles, float)
         return self.moving(q, np.zeros_like(q))[0]
 
+    def hips(self, angles: ArrayLike) -> Array:
+        """Swing axes in the mean body frame [m], shape and angles as for `places`."""
+        body = np.asarray(angles, float)[..., self._yaw]
+        links = self.chain.state(body, np.zeros_like(body))
+        alpha = links.link_angles
+        left = np.stack([-np.sin(alpha), np.cos(alpha)], axis=-1)
+        side = LEFT_RIGHT[:, None] * self.robot.legs.hip_offset
+        hips = links.points[..., :, None, :] + side * left[..., :, None, :]
+        return hips.reshape(*body.shape[:-1], -1, 2)
+
     def down(self, angles: ArrayLike) -> NDArray[np.bool_]:
         """Whether each foot is down, shape (..., 2 n), at joint angles [rad], (..., 5 n - 1)."""
         down: NDArray[np.bool_] = np.asarray(angles, float)[..., self._lift] <= DOWN

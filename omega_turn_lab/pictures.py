@@ -18,7 +18,7 @@ from omega_turn_lab.body_shapes import (
     turned_deg,
 )
 from omega_turn_lab.run_record import RunRecord
-from omega_turn_ros.robot import Robot
+from omega_turn_ros.robot import LeggedRobot, Robot
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -74,8 +74,9 @@ def draw_turn(record: RunRecord, robot: Robot, command_deg: float, path: Path) -
         _draw_heading(over_time, record.time, heading, command_deg, chosen)
         _draw_kymograph(figure, joints, record, robot)
         figure.align_ylabels([over_time, joints])
+        turn = 'Turn while walking' if isinstance(robot, LeggedRobot) else 'Turn in place'
         figure.suptitle(
-            f'Turn in place of {robot.name}: commanded {_degrees(command_deg)}, '
+            f'{turn} of {robot.name}: commanded {_degrees(command_deg)}, '
             f'achieved {_degrees(heading[-1])}',
             fontsize=10,
         )

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from omega_turn_lab.body_shapes import (
     body_outlines,
     body_polygons,
+    leg_lines,
     module_polygons,
     nice_step,
     sampled_at,
@@ -102,9 +103,10 @@ class _Scene:
 
         self._record, self._robot, self._speed = record, robot, speed
         self._outlines = body_outlines(record, robot)
+        self._legs, self._down = leg_lines(record, robot)
         self._turned = turned_deg(record)
         self._side = FRAME_SIZE * SUPERSAMPLING
-        corners = self._outlines.reshape(-1, 2)
+        corners = np.concatenate([self._outlines.reshape(-1, 2), self._legs.reshape(-1, 2)])
         low, high = corners.min(axis=0), corners.max(axis=0)
         self._centre = 0.5 * (low + high)
         # The strip of text above the ground must not cover the body.
@@ -123,6 +125,8 @@ class _Scene:
         trail = self._pixels(self._record.pose[: index + 1, :2])
         if len(trail) > 1:
             draw.line(trail, fill=self.TRAIL, width=3 * SUPERSAMPLING // 2, joint='curve')
+        for leg, stands in zip(self._legs[index], self._down[index]):
+            self._draw_leg(draw, leg, stands)
         for polygon in body_polygons(self._outlines[index], 0.7 * self._robot.module_width):
             draw.polygon(self._pixels(polygon), fill=self.SPINE)
         modules = module_polygons(self._outlines[index], self._robot)
@@ -132,6 +136,14 @@ class _Scene:
         self._draw_text(draw, index)
         small = picture.resize((FRAME_SIZE, FRAME_SIZE), Image.Resampling.BOX)
         return small.quantize(palette=self._palette, dither=Image.Dither.NONE)
+
+    def _draw_leg(self, draw: ImageDraw, leg: Array, stands: bool) -> None:
+        """One leg, with a dot under a foot that is down."""
+        draw.line(self._pixels(leg), fill=self.SPINE, width=4 * SUPERSAMPLING)
+        if stands:
+            x, y = self._pixels(leg)[1]
+            radius = 4 * SUPERSAMPLING
+            draw.ellipse((x - radius, y - radius, x + radius, y + radius), fill=self.HEAD)
 
     def _pixels(self, points: Array) -> list[tuple[float, float]]:
         """World [m] to picture [px], y up."""

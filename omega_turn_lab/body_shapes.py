@@ -10,10 +10,12 @@ from numpy.typing import ArrayLike, NDArray
 from omega_turn_lab.run_record import RunRecord
 from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.mechanics.chain import PlanarChain
-from omega_turn_ros.robot import Robot
+from omega_turn_ros.mechanics.feet import Feet
+from omega_turn_ros.robot import LeggedRobot, Robot
 
 Array = NDArray[np.float64]
 
+RAISED = math.radians(2.0)  # lift of a leg beyond which its foot is drawn in the air
 ROUND = 13  # corners of each half circle; odd, so that one lies at its tip
 
 
@@ -91,6 +93,19 @@ def body_outlines(record: RunRecord, robot: Robot) -> Array:
         raise BadInputError('joint_positions', columns, f'{robot.n_joints} joints of {robot.name}')
     yaw = record.joint_positions[:, robot.yaw_indices]
     return PlanarChain.of_robot(robot).outline(yaw, record.pose)
+
+
+def leg_lines(record: RunRecord, robot: Robot) -> tuple[Array, NDArray[np.bool_]]:
+    """Legs from hip to foot [m], shape (T, legs, 2, 2), and which feet are down, (T, legs)."""
+    count = len(record.time)
+    if not isinstance(robot, LeggedRobot):
+        return np.zeros((count, 0, 2, 2)), np.zeros((count, 0), bool)
+    feet, q = Feet(robot), np.asarray(record.joint_positions, float)
+    lines = np.stack([feet.hips(q), feet.places(q)], axis=-2)
+    c, s = np.cos(record.pose[:, 2]), np.sin(record.pose[:, 2])
+    turn = np.stack([np.stack([c, s], -1), np.stack([-s, c], -1)], axis=-2)
+    lift = q[:, np.array(robot.joint_axes) == 'lift']
+    return lines @ turn[:, None] + record.pose[:, None, None, :2], lift < RAISED
 
 
 def turned_deg(record: RunRecord) -> Array:

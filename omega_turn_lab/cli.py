@@ -52,7 +52,9 @@ def _parser() -> argparse.ArgumentParser:
 def _add_demo(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--turn-deg', type=_angle, default=90.0, help='+ = counter-clockwise')
     parser.add_argument('--out', type=Path, default=Path('out'), help='folder for the files')
-    parser.add_argument('--gait', default='omega', help='name in config/gaits, or a path')
+    parser.add_argument(
+        '--gait', default='', help="name in config/gaits, or a path; default: the robot's"
+    )
     parser.add_argument('--robot', default='limbless16', help='name in config/robots, or a path')
     parser.add_argument('--period', type=float, default=10.0, help='of a gait cycle [s]')
     parser.add_argument('--heading-feedback', choices=('odom', 'none'), default='odom')
@@ -153,12 +155,14 @@ def _domain(text: str) -> int:
 
 def _run_demo(options: argparse.Namespace) -> int:
     from omega_turn_lab.demo import DemoOptions, run_demo
+    from omega_turn_ros.gaits.library import default_gait
+    from omega_turn_ros.robot import load_robot
 
     return run_demo(
         DemoOptions(
             turn_deg=options.turn_deg,
             out=options.out,
-            gait=options.gait,
+            gait=options.gait or default_gait(load_robot(options.robot)),
             robot=options.robot,
             period=options.period,
             heading_feedback=options.heading_feedback,

@@ -11,18 +11,23 @@ from tqdm import tqdm
 
 from omega_turn_lab.folder import make_folder
 from omega_turn_ros.design.catalogue import Recipe, design_recipe
+from omega_turn_ros.design.legged import LeggedDesign, LeggedRecipe, design_legged
 from omega_turn_ros.design.problem import Design
 from omega_turn_ros.design.sidewinding import (
     SidewindingDesign,
     SidewindingRecipe,
     design_sidewinding,
 )
+from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.gaits.library import LibraryGait, gait_to_mapping
-from omega_turn_ros.robot import Robot
+from omega_turn_ros.robot import LeggedRobot, Robot
 
 
 def run_design(
-    robot: Robot, recipes: Sequence[Recipe | SidewindingRecipe], seed: int, out: Path
+    robot: Robot,
+    recipes: Sequence[Recipe | SidewindingRecipe | LeggedRecipe],
+    seed: int,
+    out: Path,
 ) -> int:
     """Write one file per recipe into `out`; return 0.
 
@@ -32,9 +37,15 @@ def run_design(
     make_folder(out)
     lines, entries = [], []
     for recipe in tqdm(recipes, desc='designing', unit='gait'):
-        design: Design | SidewindingDesign
+        design: Design | SidewindingDesign | LeggedDesign
         if isinstance(recipe, SidewindingRecipe):
             design, entry = design_sidewinding(recipe, robot)
+        elif isinstance(robot, LeggedRobot):
+            if not isinstance(recipe, LeggedRecipe):
+                raise BadInputError('robot', robot.name, 'one without legs; with legs, use --all')
+            design, entry = design_legged(recipe, robot)
+        elif isinstance(recipe, LeggedRecipe):
+            raise BadInputError('robot', robot.name, 'a robot with legs')
         else:
             design, entry = design_recipe(recipe, robot, seed)
         text = yaml.safe_dump(
@@ -57,7 +68,9 @@ def _speed(entry: LibraryGait) -> float:
     return entry.calibration.largest_angle / (2.0 * math.pi * entry.calibration.peak_rate)
 
 
-def _account(design: Design | SidewindingDesign, entry: LibraryGait, path: Path) -> str:
+def _account(
+    design: Design | SidewindingDesign | LeggedDesign, entry: LibraryGait, path: Path
+) -> str:
     parameters = ', '.join(f'{k} {_short(v)}' for k, v in entry.gait.to_mapping().items())
     search = f'{design.evaluations} cycles integrated'
     if isinstance(design, Design):

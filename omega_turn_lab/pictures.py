@@ -12,13 +12,14 @@ from numpy.typing import NDArray
 from omega_turn_lab.body_shapes import (
     body_outlines,
     body_polygons,
+    leg_lines,
     nice_step,
     sampled_at,
     turned_deg,
 )
 from omega_turn_lab.ground_view import LEVEL, GroundView
 from omega_turn_lab.run_record import RunRecord
-from omega_turn_ros.robot import Robot
+from omega_turn_ros.robot import LeggedRobot, Robot
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -83,8 +84,9 @@ def draw_turn(
         _draw_heading(over_time, record.time, heading, command_deg, chosen)
         _draw_kymograph(figure, joints, record, robot)
         figure.align_ylabels([over_time, joints])
+        turn = 'Turn while walking' if isinstance(robot, LeggedRobot) else 'Turn in place'
         figure.suptitle(
-            f'Turn in place of {robot.name}{ground.title}: commanded {_degrees(command_deg)}, '
+            f'{turn} of {robot.name}{ground.title}: commanded {_degrees(command_deg)}, '
             f'achieved {_degrees(heading[-1])}',
             fontsize=10,
         )
@@ -124,10 +126,12 @@ def _draw_bodies(
 
     colours, scale = _colours(record.time)
     ends = {0: 'start', len(record.time) - 1: 'end'}
+    legs, down = leg_lines(record, robot)
     for place, index in enumerate(chosen):
         colour = colours(scale(record.time[index]))
         solid = index in ends
         order = 3.0 if solid else 2.0 + 0.1 * place  # the later covers the earlier
+        _draw_legs(axes, legs[index], down[index], colour, order)
         _draw_body(axes, outlines[index], robot.module_width, colour, solid, order)
     for index, word in ends.items():
         colour = colours(scale(record.time[index]))
@@ -158,6 +162,16 @@ def _draw_ground(axes: Axes, ground: GroundView) -> None:
     axes.add_artist(Line2D(*grains.T, color=GRAIN_COLOUR, **dots))
     obstacles = PolyCollection(ground.obstacles, facecolor=OBSTACLE_COLOUR, zorder=2.95)
     axes.add_collection(obstacles, autolim=False)
+
+
+def _draw_legs(
+    axes: Axes, legs: Array, down: NDArray[np.bool_], colour: Any, order: float
+) -> None:
+    """Legs of one body, with a dot under each foot that is down."""
+    for leg, stands in zip(legs, down):
+        axes.plot(*leg.T, color=colour, linewidth=0.9, zorder=order)
+        if stands:
+            axes.plot(*leg[1], 'o', color=colour, markersize=2.0, zorder=order)
 
 
 def _draw_body(

@@ -1,4 +1,4 @@
-"""What a robot is to this package: joint names, axes, limits and the planar chain they make."""
+"""What a robot is to this package: joint names, axes, limits, the planar chain, and any legs."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.resources import fields_apart, read_config
 
 AXES = ('yaw', 'pitch')
+LEG_PAIR = ('swing', 'lift', 'swing', 'lift')  # axes of the joints of one leg pair, left leg first
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,6 +111,59 @@ class Robot:
         )
 
 
+@dataclass(frozen=True, slots=True)
+class Legs:
+    """Legs of one robot, all alike; each foot hangs from a bent leg below and beside its hip.
+
+    Attributes:
+        hip_offset: of the swing axes from the body axis [m].
+        reach: foot beside its swing axis when down [m].
+        height: of the body axis above the ground when the feet are down [m].
+        mass: of one leg [kg].
+    """
+
+    hip_offset: float
+    reach: float
+    height: float
+    mass: float
+
+
+@dataclass(frozen=True, slots=True)
+class LeggedRobot(Robot):
+    """Segments with a leg pair in the middle of each and a yaw joint between neighbours.
+
+    Joints, head to tail: swing and lift of the left leg, of the right leg, then the yaw joint to
+    the next segment. Swing > 0 moves the foot forward, lift > 0 up. `head_length` is the length of
+    the first segment, `module_length` of the others, `module_mass` their mass without legs.
+
+    Attributes:
+        legs: what all legs share.
+    """
+
+    legs: Legs
+
+    @property
+    def n_pairs(self) -> int:
+        """Number of leg pairs."""
+        return self.n_yaw + 1
+
+    @property
+    def body_lengths(self) -> NDArray[np.float64]:
+        """Length of each segment [m], head first, shape (n_pairs,)."""
+        return np.array([self.head_length] + [self.module_length] * self.n_yaw)
+
+    @property
+    def planar_link_lengths(self) -> NDArray[np.float64]:
+        """See `Robot.planar_link_lengths`: the segments."""
+        return self.body_lengths
+
+    @property
+    def weight(self) -> float:
+        """Total weight on level ground [N]."""
+        legs = 2 * self.n_pairs * self.legs.mass
+        return (float(self.body_masses.sum()) + legs) * STANDARD_GRAVITY
+
+
 STANDARD_GRAVITY = 9.81  # [m/s^2], the value the simulator uses too
 
 
@@ -123,7 +177,7 @@ def load_robot(name: str) -> Robot:
 
 
 def robot_from_mapping(data: dict[str, Any]) -> Robot:
-    """Check a mapping field by field and build the robot it describes.
+    """Check a mapping field by field and build the robot it describes, legged if it has `legs`.
 
     Raises:
         BadInputError: a field is missing, unknown or out of range.
@@ -137,19 +191,32 @@ def robot_from_mapping(data: dict[str, Any]) -> Robot:
         'velocity_limit',
         'effort_limit',
     )
-    optional = {'name', 'effort_sign'}
+    optional = {'name', 'effort_sign', 'legs'}
     known = {'joints', *numbers} | (optional & set(data))
     if not set(data) <= known:
         expected = f'the fields of a robot file ({fields_apart(data, known)})'
         raise BadInputError('robot', data.get('name'), expected)
-    names, axes = _check_joints(data.get('joints'))
+    legs = _check_legs(data['legs']) if 'legs' in data else None
+    names, axes = _check_joints(data.get('joints'), AXES if legs is None else ('yaw', *LEG_PAIR))
     values = {key: _check_positive(key, data.get(key)) for key in numbers}
     if values['position_limit'] > math.pi:
         raise BadInputError('position_limit', values['position_limit'], 'at most pi [rad]')
     sign = data.get('effort_sign', 1)
     if sign not in (1, -1):
         raise BadInputError('effort_sign', sign, '1 or -1')
-    return Robot(str(data.get('name', 'robot')), names, axes, effort_sign=sign, **values)
+    name = str(data.get('name', 'robot'))
+    if legs is None:
+        return Robot(name, names, axes, effort_sign=sign, **values)
+    if axes != (*LEG_PAIR, *(('yaw', *LEG_PAIR) * axes.count('yaw'))):
+        raise BadInputError('joints', list(axes), f'{LEG_PAIR}, then yaw and {LEG_PAIR} in turn')
+    return LeggedRobot(name, names, axes, effort_sign=sign, legs=legs, **values)
+
+
+def _check_legs(legs: object) -> Legs:
+    fields = Legs.__slots__
+    if not isinstance(legs, dict) or set(legs) != set(fields):
+        raise BadInputError('legs', legs, f'a mapping with exactly {", ".join(fields)}')
+    return Legs(**{key: _check_positive(f'legs.{key}', legs[key]) for key in fields})
 
 
 def _check_positive(field: str, value: object) -> float:
@@ -160,7 +227,9 @@ def _check_positive(field: str, value: object) -> float:
     return float(value)
 
 
-def _check_joints(joints: object) -> tuple[tuple[str, ...], tuple[str, ...]]:
+def _check_joints(
+    joints: object, known: tuple[str, ...]
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
     if not isinstance(joints, Sequence) or isinstance(joints, str) or not joints:
         raise BadInputError('joints', joints, 'a list of {name, axis}, head to tail')
     names, axes = [], []
@@ -168,8 +237,8 @@ def _check_joints(joints: object) -> tuple[tuple[str, ...], tuple[str, ...]]:
         field = f'joints[{i}]'
         if not isinstance(joint, dict) or set(joint) != {'name', 'axis'}:
             raise BadInputError(field, joint, 'a mapping with exactly name and axis')
-        if joint['axis'] not in AXES:
-            raise BadInputError(f'{field}.axis', joint['axis'], f'one of {AXES}')
+        if joint['axis'] not in known:
+            raise BadInputError(f'{field}.axis', joint['axis'], f'one of {known}')
         if not isinstance(joint['name'], str) or not joint['name'] or joint['name'] in names:
             raise BadInputError(f'{field}.name', joint['name'], 'a name used once')
         names.append(joint['name'])

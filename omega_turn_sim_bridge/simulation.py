@@ -12,11 +12,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from omega_turn_ros.errors import BadInputError, SimulationError
-from omega_turn_ros.robot import STANDARD_GRAVITY, Robot
+from omega_turn_ros.robot import STANDARD_GRAVITY, LeggedRobot, Robot
 from omega_turn_sim_bridge.body_frame import tilted_heading
 from omega_turn_sim_bridge.engine import pybullet
 from omega_turn_sim_bridge.granular import GranularGround
+from omega_turn_sim_bridge.legged import legged_urdf
 from omega_turn_sim_bridge.robot import ride_height, urdf_from_robot
+from omega_turn_sim_bridge.stiction import Stiction
 from omega_turn_sim_bridge.terrain import build_ground
 from omega_turn_sim_bridge.terrain_config import TerrainConfig
 
@@ -42,6 +44,8 @@ class SimulationConfig:
         solver_iterations: of the constraint solver, per step.
         friction: kinetic friction coefficient between feet and ground; of grains, resistance to
             sliding lengthways over the weight.
+        static_friction: coefficient of a foot at rest, as on carpet, see `stiction`; 0 is the
+            kinetic one. For robots with legs.
         contact_stiffness: of each foot [N/m]. Compliant feet share the weight evenly; rigid
             contact is statically indeterminate and lets friction act at random places.
         contact_damping: of each foot [N s/m].
@@ -60,6 +64,7 @@ class SimulationConfig:
     time_step: float = 1.0 / 200.0
     solver_iterations: int = 20
     friction: float = 0.5
+    static_friction: float = 0.0
     contact_stiffness: float = 5e3
     contact_damping: float = 100.0
     effort_limit: float = 0.0
@@ -77,6 +82,7 @@ class SimulationConfig:
         positive = ('time_step', 'solver_iterations', 'contact_stiffness', 'servo_frequency')
         not_negative = (
             'friction',
+            'static_friction',
             'contact_damping',
             'effort_limit',
             'pitch_effort_limit',
@@ -89,6 +95,9 @@ class SimulationConfig:
             if not math.isfinite(value) or value < 0 or (name in positive and value == 0):
                 expected = 'a finite number > 0' if name in positive else 'a finite number >= 0'
                 raise BadInputError(name, value, expected)
+        if 0.0 < self.static_friction < self.friction:
+            expected = f'0, or at least the kinetic friction {self.friction:g}'
+            raise BadInputError('static_friction', self.static_friction, expected)
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,6 +144,8 @@ class Simulation:
         self._yaw = robot.yaw_indices
         self._is_yaw = np.array([axis == 'yaw' for axis in robot.joint_axes])
         self._mass_fractions = robot.body_masses / robot.body_masses.sum()
+        legged = isinstance(robot, LeggedRobot)
+        self._bodies = self._yaw.tolist() if legged else self._joints  # of the mean body frame
         self._behind = self._fraction_behind_joints()
         self._steps = 0
         try:
@@ -184,7 +195,7 @@ class Simulation:
         """
         self._check_open()
         front = self.robot.length * 0.5 - self.robot.head_length
-        above = self._ground.top + ride_height(self.robot)
+        above = self._ground.top + self._ride_height()
         position = (front, 0.0, above)
         pybullet.resetBasePositionAndOrientation(
             self._body, self._base_frame(position), (0, 0, 0, 1), physicsClientId=self._client
@@ -248,6 +259,8 @@ class Simulation:
             self._drive(rate)
             if self._grains is not None:
                 self._grains.push(self._client, self._body)
+            if self._stiction is not None:
+                self._stiction.update()
             pybullet.stepSimulation(physicsClientId=self._client)
             self._steps += 1
             # Commands come in stairs, so torques ripple in step with them: a reading that looked
@@ -369,7 +382,7 @@ class Simulation:
             flags |= pybullet.URDF_USE_SELF_COLLISION_EXCLUDE_PARENT
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / f'{self.robot.name}.urdf'
-            path.write_text(urdf_from_robot(self.robot, solid=self._ground.solid))
+            path.write_text(self._urdf())
             self._body = pybullet.loadURDF(str(path), flags=flags, physicsClientId=client)
         stiffness = self._body_stiffness()
         for link in range(-1, self.robot.n_joints):
@@ -384,13 +397,36 @@ class Simulation:
                 jointDamping=0.0,
                 physicsClientId=client,
             )
+        self._stiction = self._carpet()
         pitch = config.pitch_effort_limit or self._effort_limit
         self._forces = [
-            self._effort_limit if axis == 'yaw' else pitch for axis in self.robot.joint_axes
+            pitch if axis == 'pitch' else self._effort_limit for axis in self.robot.joint_axes
         ]
         self._position_gains = [0.3] * self.robot.n_joints
         self._velocity_gains = [1.0] * self.robot.n_joints
         self.reset()
+
+    def _urdf(self) -> str:
+        if not isinstance(self.robot, LeggedRobot):
+            return urdf_from_robot(self.robot, solid=self._ground.solid)
+        if self._ground.solid:
+            raise BadInputError('terrain', self.config.terrain.kind, 'flat for a robot with legs')
+        return legged_urdf(self.robot)
+
+    def _carpet(self) -> Stiction | None:
+        """What makes feet stick harder than they slide, if anything does."""
+        kinetic, static = self.config.friction, self.config.static_friction
+        if static <= kinetic:
+            return None
+        if not isinstance(self.robot, LeggedRobot):
+            raise BadInputError('static_friction', static, 'a robot with legs')
+        return Stiction(self._client, self._body, self.robot, (kinetic, static))
+
+    def _ride_height(self) -> float:
+        """Height of the body axis above the ground at rest [m]."""
+        if isinstance(self.robot, LeggedRobot):
+            return self.robot.legs.height
+        return ride_height(self.robot)
 
     def _body_stiffness(self) -> float:
         """Contact stiffness of the robot's bodies [N/m]; what carries it makes up for the rest.
@@ -430,7 +466,7 @@ class Simulation:
         )
         base_velocity, base_rate = pybullet.getBaseVelocity(self._body, physicsClientId=client)
         links = pybullet.getLinkStates(
-            self._body, self._joints, computeLinkVelocity=1, physicsClientId=client
+            self._body, self._bodies, computeLinkVelocity=1, physicsClientId=client
         )
         bend = float(self._behind @ positions[self._yaw])
         if self._ground.top > 0.0:

@@ -12,6 +12,7 @@ NAMES = (
     'pegboard',
     'rocks',
     'height',
+    'legged',
     'sensitivity',
     'beyond',
 )

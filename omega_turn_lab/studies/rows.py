@@ -12,7 +12,7 @@ from omega_turn_lab.studies.published import paper_figure
 from omega_turn_lab.studies.tasks import DesignTask
 from omega_turn_ros import __version__
 
-DIGITS = {'deg': 1, 'BL^2': 3}  # decimals shown
+DIGITS = {'deg': 1, 'BL': 3, 'BL^2': 3}  # decimals shown
 FILE_WIDTH = 120  # [characters]
 
 
@@ -24,7 +24,7 @@ class Row:
         case: what people call it.
         params: N, k_f, k_t, theta_max_deg.
         quantity: such as 'angle' or 'swept_area'.
-        unit: 'deg', 'BL^2' or '1'.
+        unit: 'deg', 'BL', 'BL^2' or '1'.
         paper: mean of the paper's trials.
         paper_std: their standard deviation.
         quasi_static: ours by force balance.

@@ -11,11 +11,12 @@ from omega_turn_ros.design.calibrate import make_library_gait
 from omega_turn_ros.design.direct import design_direct
 from omega_turn_ros.design.fourier import design_fourier
 from omega_turn_ros.design.hierarchical import design_hierarchical
+from omega_turn_ros.design.legged import LeggedRecipe
 from omega_turn_ros.design.problem import Design, DesignProblem
 from omega_turn_ros.design.sidewinding import SidewindingRecipe
 from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.gaits.library import LibraryGait
-from omega_turn_ros.robot import Robot
+from omega_turn_ros.robot import LeggedRobot, Robot
 
 METHODS: dict[str, Callable[[DesignProblem, int], Design]] = {
     'direct': design_direct,
@@ -65,10 +66,14 @@ CATALOGUE = (
 SIDEWINDING = SidewindingRecipe()
 
 
-def recipes_for(robot: Robot) -> list[Recipe | SidewindingRecipe]:
+def recipes_for(robot: Robot) -> list[Recipe | SidewindingRecipe | LeggedRecipe]:
     """Return every gait of the library that the robot can play, within its own joint limit."""
-    planar: list[Recipe | SidewindingRecipe] = [within_limits(r, robot) for r in CATALOGUE]
-    return [*planar, SIDEWINDING] if SIDEWINDING.fits(robot) else planar
+    if isinstance(robot, LeggedRobot):
+        return [LeggedRecipe()]
+    found: list[Recipe | SidewindingRecipe | LeggedRecipe] = [
+        within_limits(recipe, robot) for recipe in CATALOGUE
+    ]
+    return [*found, SIDEWINDING] if SIDEWINDING.fits(robot) else found
 
 
 def within_limits(recipe: Recipe, robot: Robot) -> Recipe:

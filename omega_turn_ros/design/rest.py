@@ -11,10 +11,12 @@ from omega_turn_ros.errors import ConvergenceError
 from omega_turn_ros.gaits.gait import Gait
 from omega_turn_ros.gaits.wave_gait import WaveGait
 from omega_turn_ros.mechanics.chain import PlanarChain
+from omega_turn_ros.mechanics.feet import Feet
 from omega_turn_ros.mechanics.posture import unbend_heading
 from omega_turn_ros.mechanics.resting_chain import RestingChain
 from omega_turn_ros.mechanics.resting_motion import lie_down_heading
-from omega_turn_ros.robot import Robot
+from omega_turn_ros.mechanics.shuffle import shuffle_heading
+from omega_turn_ros.robot import LeggedRobot, Robot
 
 Array = NDArray[np.float64]
 
@@ -25,6 +27,9 @@ def heading_to_rest(robot: Robot, gait: Gait) -> Callable[[Array], float]:
     It takes the angles of the joints the gait moves [rad], shape (N,). A robot that would roll
     over has no heading to predict: 0.
     """
+    if isinstance(robot, LeggedRobot):
+        feet, rest = Feet(robot, 'static'), gait.on(robot).rest
+        return lambda posture: shuffle_heading(feet, posture, rest)
     if isinstance(gait, WaveGait):
         planar = PlanarChain.of_robot(robot)
         return lambda yaw: unbend_heading(planar, yaw)

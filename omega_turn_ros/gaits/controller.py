@@ -260,7 +260,7 @@ class GaitController:
         if abs(rest) <= self._tolerance or state.cycles >= state.budget:
             return self._move_to_rest(state)
         scale = plan_turn(rest, self.gait.calibration, state.ratio).scale
-        if not self.gait.gait.scales_size and abs(scale - state.scale) > SAME_SCALE:
+        if not self.gait.gait.scales_size and not self._start_alike(scale, state.scale):
             return self._move_to_rest(state)  # and plan again from there
         return self._move_to_start(state, scale, bend)
 
@@ -312,6 +312,14 @@ class GaitController:
         return replace(
             state, mode=Mode.MOVING, move=move, to_cycle=False, phase_rate=0.0, settling=0.0
         )
+
+    def _start_alike(self, scale: float, other: float) -> bool:
+        """Whether cycles of two scales begin near enough to each other to go on without a rest."""
+        if abs(scale - other) <= SAME_SCALE:
+            return True
+        start = self.gait.calibration.start_phase
+        first, second = (self._played.at(start, s, (0.0, 0.0)) for s in (scale, other))
+        return bool(np.abs(first - second).max() < SAME_SHAPE)
 
     def _plan_move(self, start: Array, end: Array, waypoint: Array | None, bend: float) -> Move:
         velocity = self._move_velocity()

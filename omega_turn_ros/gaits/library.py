@@ -10,15 +10,18 @@ from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.gaits.calibration import Calibration, calibration_from_mapping
 from omega_turn_ros.gaits.fourier_gait import FourierGait
 from omega_turn_ros.gaits.gait import Gait
+from omega_turn_ros.gaits.legged import LeggedGait
 from omega_turn_ros.gaits.sidewinding import Sidewinding
 from omega_turn_ros.gaits.two_wave_gait import TwoWaveGait
 from omega_turn_ros.gaits.wave_gait import WaveGait
 from omega_turn_ros.resources import config_names, fields_apart, read_config
+from omega_turn_ros.robot import LeggedRobot, Robot
 
-KINDS: dict[str, type[TwoWaveGait] | type[FourierGait] | type[Sidewinding]] = {
+KINDS: dict[str, type[TwoWaveGait] | type[FourierGait] | type[Sidewinding] | type[LeggedGait]] = {
     'two_wave': TwoWaveGait,
     'fourier': FourierGait,
     'sidewinding': Sidewinding,
+    'legged': LeggedGait,
 }
 
 
@@ -57,6 +60,11 @@ class LibraryGait:
 def gait_names() -> list[str]:
     """Names of the shipped gaits."""
     return config_names('gaits')
+
+
+def default_gait(robot: Robot) -> str:
+    """Name of the shipped gait that a robot turns with unless told otherwise."""
+    return 'legged' if isinstance(robot, LeggedRobot) else 'omega'
 
 
 def load_gait(name: str) -> LibraryGait:

@@ -381,3 +381,42 @@ def velocities(kind, law, lengths, link, along, across, w, angles, rates):  # ty
         result[b, 0], result[b, 1] = xi[0] * speed, xi[1] * speed
         result[b, 2] = xi[2] * speed / size
     return result, failed
+
+
+@njit(cache=True, nogil=True, error_model='numpy')
+def velocities_of_feet(points, rates, loads, size):  # type: ignore[no-untyped-def]
+    """Body velocity of feet under isotropic friction, every shape started from the one before.
+
+    Args:
+        points: [m], shape (B, P, 2).
+        rates: their velocities with the body held [m/s], shape (B, P, 2).
+        loads: of the feet, any unit; 0 is a foot in the air, shape (B, P).
+        size: of the body [m].
+
+    Returns:
+        xi [m/s, m/s, rad/s], shape (B, 3), and the number of shapes that did not converge.
+    """
+    law, out, trial, xi = np.ones(4), np.empty(12), np.empty(3), np.zeros(3)
+    result = np.zeros((points.shape[0], 3))
+    failed = 0
+    for b in range(points.shape[0]):
+        down = np.flatnonzero(loads[b])
+        p, w = np.zeros((6, down.size)), np.empty(down.size)
+        p[4] = 1.0  # friction is isotropic: any axis will do
+        speed = 0.0
+        for j in range(down.size):
+            i = down[j]
+            p[0, j], p[1, j] = points[b, i, 0] / size, points[b, i, 1] / size
+            p[2, j], p[3, j] = rates[b, i, 0], rates[b, i, 1]
+            w[j] = loads[b, i]
+            speed += (abs(p[2, j]) + abs(p[3, j])) / down.size
+        if not speed > 0.0:
+            continue
+        w /= w.sum()
+        p[2:4] /= speed
+        if not balance(COULOMB, law, p, w, xi, out, trial):
+            failed += 1
+            xi[:] = 0.0
+        result[b, 0], result[b, 1] = xi[0] * speed, xi[1] * speed
+        result[b, 2] = xi[2] * speed / size
+    return result, failed

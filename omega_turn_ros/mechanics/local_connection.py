@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from omega_turn_ros.errors import BadInputError
-from omega_turn_ros.mechanics.quasi_static import QuasiStatic
+from omega_turn_ros.mechanics.motion import Motion
 
 Array = NDArray[np.float64]
 
@@ -59,7 +59,7 @@ def shape_directions(m: int) -> Array:
 
 
 def local_connection(
-    motion: QuasiStatic,
+    motion: Motion,
     angles: ArrayLike,
     jacobian: ArrayLike,
     directions: ArrayLike | None = None,

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from omega_turn_ros.errors import BadInputError, ConvergenceError
+from omega_turn_ros.errors import ConvergenceError
 from omega_turn_ros.mechanics.chain import PlanarChain, ShapeState
 from omega_turn_ros.mechanics.force_balance import (
     joint_torques,
@@ -19,7 +19,7 @@ from omega_turn_ros.mechanics.force_balance import (
 )
 from omega_turn_ros.mechanics.force_laws import COULOMB, CoulombFriction, ForceLaw
 from omega_turn_ros.mechanics.kernel import velocities
-from omega_turn_ros.mechanics.trajectory import integrate_twists
+from omega_turn_ros.mechanics.motion import Motion
 
 Array = NDArray[np.float64]
 
@@ -27,7 +27,7 @@ ISOTROPIC = CoulombFriction()
 STICKING = 1e-3  # slip of a point over the mean shape speed below which it may stick
 
 
-class QuasiStatic:
+class QuasiStatic(Motion):
     """A chain on a ground (Sec. IV.A: body velocity from force and torque balance).
 
     Args:
@@ -119,54 +119,3 @@ class QuasiStatic:
         force = np.stack([c * along - s * across, s * along + c * across], axis=-1)
         result: Array = self.chain.normal_forces[:, None] * force
         return result
-
-    def displacements(self, path: ArrayLike) -> Array:
-        """Body displacement in each step along a path of shapes, by the midpoint rule.
-
-        Args:
-            path: yaw joint angles [rad], shape (..., T, N), T >= 2.
-
-        Returns:
-            Motion during each step in the mean body frame at its middle [m, m, rad], shape
-            (..., T - 1, 3). Rate-independent: only the sequence of shapes counts.
-        """
-        shapes = self._checked('path', path)
-        step = np.diff(shapes, axis=-2)
-        return self.body_velocity(shapes[..., :-1, :] + 0.5 * step, step)
-
-    def heading_along(self, path: ArrayLike) -> Array:
-        """Heading of the mean body axis along a path [rad], 0 at its start.
-
-        Args:
-            path: yaw joint angles [rad], shape (..., T, N), T >= 2.
-
-        Returns:
-            Heading, shape (..., T).
-        """
-        turn = self.displacements(path)[..., 2]
-        heading = np.zeros((*turn.shape[:-1], turn.shape[-1] + 1))
-        np.cumsum(turn, axis=-1, out=heading[..., 1:])
-        return heading
-
-    def pose_along(self, path: ArrayLike) -> Array:
-        """Pose of the mean body frame along one path from the origin, exact in SE(2) per step.
-
-        Args:
-            path: yaw joint angles [rad], shape (T, N), T >= 2.
-
-        Returns:
-            x [m], y [m], heading [rad] in the world, shape (T, 3).
-        """
-        return integrate_twists(self.displacements(path))
-
-    def turn(self, path: ArrayLike) -> float:
-        """Heading change over a path [rad]; for a closed path the angle per cycle."""
-        return float(self.displacements(path)[..., 2].sum())
-
-    def _checked(self, field: str, values: ArrayLike) -> Array:
-        array = np.asarray(values, float)
-        if array.ndim < 1 or array.shape[-1] != self.chain.n_joints:
-            raise BadInputError(field, array.shape, f'shape (..., {self.chain.n_joints})')
-        if not np.isfinite(array).all():
-            raise BadInputError(field, 'NaN or Inf', 'finite numbers')
-        return array

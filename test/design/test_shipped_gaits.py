@@ -26,7 +26,8 @@ FLOORS = {'omega': 92.0, 'omega_75': 50.0, 'omega_60': 26.0, 'offset': 54.0}
 
 
 def test_the_library_is_what_the_catalogue_says() -> None:
-    assert sorted(gait_names()) == sorted(recipe.name for recipe in recipes_for(ROBOT))
+    recipes = [*recipes_for(ROBOT), *recipes_for(load_robot('legged10'))]
+    assert sorted(gait_names()) == sorted(recipe.name for recipe in recipes)
     for recipe in CATALOGUE:
         shipped = load_gait(recipe.name)
         assert (shipped.gait.k_f, shipped.gait.k_t) == (recipe.k_f, recipe.k_t)

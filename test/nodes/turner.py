@@ -21,7 +21,7 @@ from omega_turn_ros.mechanics.trajectory import heading_along
 from omega_turn_ros.nodes.gait_node import WAVES, GaitNode
 from omega_turn_ros.nodes.qos import COMMAND, STATE
 from omega_turn_ros.nodes.time import nanoseconds_of, stamp_of
-from omega_turn_ros.robot import load_robot
+from omega_turn_ros.robot import Robot, load_robot
 
 Array = NDArray[np.float64]
 
@@ -51,10 +51,13 @@ class CommandWatch:
         node: that listens.
         limits: to be kept.
         start: posture before the first command [rad], shape (n_joints,).
+        robot: that is commanded.
     """
 
-    def __init__(self, node: Node, limits: JointLimits, start: Array) -> None:
-        self.limits = limits
+    def __init__(
+        self, node: Node, limits: JointLimits, start: Array, robot: Robot = ROBOT
+    ) -> None:
+        self.limits, self.robot = limits, robot
         self.messages: list[JointState] = []
         self._last, self._stamp = start, -1
         node.create_subscription(JointState, 'joint_commands', self.check, DEEP)
@@ -62,7 +65,7 @@ class CommandWatch:
     @property
     def positions(self) -> Array:
         """All commands so far [rad], shape (n_commands, n_joints)."""
-        return np.array([m.position for m in self.messages]).reshape(-1, ROBOT.n_joints)
+        return np.array([m.position for m in self.messages]).reshape(-1, self.robot.n_joints)
 
     @property
     def newest(self) -> Array:
@@ -75,8 +78,8 @@ class CommandWatch:
         seconds = STEP if self._stamp < 0 else (stamp - self._stamp) * 1e-9
         dt = min(max(seconds, 0.0), LONGEST_STEP)
         now, rates = np.array(message.position), np.array(message.velocity)
-        assert list(message.name) == list(ROBOT.joint_names)
-        assert now.shape == rates.shape == (ROBOT.n_joints,)
+        assert list(message.name) == list(self.robot.joint_names)
+        assert now.shape == rates.shape == (self.robot.n_joints,)
         assert np.isfinite(now).all() and np.isfinite(rates).all()
         step = np.abs(now - self._last).max()
         assert np.abs(now).max() <= self.limits.position + ROUNDING

@@ -409,8 +409,9 @@ class Simulation:
     def _urdf(self) -> str:
         if not isinstance(self.robot, LeggedRobot):
             return urdf_from_robot(self.robot, solid=self._ground.solid)
-        if self._ground.solid:
-            raise BadInputError('terrain', self.config.terrain.kind, 'flat for a robot with legs')
+        kind = self.config.terrain.kind
+        if kind != 'flat':
+            raise BadInputError('terrain', kind, 'flat for a robot with legs')
         return legged_urdf(self.robot)
 
     def _carpet(self) -> Stiction | None:

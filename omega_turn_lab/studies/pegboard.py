@@ -170,7 +170,7 @@ def _record(task: ObstacleTrial, result: Result) -> dict[str, Any]:
     mode = next(name for name, config in MODES.items() if config == task.compliance)
     kind, spacing = task.terrain.kind, task.terrain.spacing_bl
     where = {'terrain': kind, 'spacing_bl': spacing if kind == 'pegboard' else None}
-    return {**where, 'mode': mode, 'seed': task.seed, **kept}
+    return {**where, 'mode': mode, 'seed': task.seed, 'cycles': task.cycles, **kept}
 
 
 def _records(outcome: Outcome) -> list[dict[str, Any]]:

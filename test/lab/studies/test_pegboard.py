@@ -11,8 +11,8 @@ import pytest
 from PIL.PngImagePlugin import PngImageFile
 
 from omega_turn_lab.obstacle_trial import ObstacleTrial
-from omega_turn_lab.studies.pegboard import MODES, OPEN, SPACINGS_BL, STUDY, YIELDING, placements
-from omega_turn_lab.studies.rows import write_json
+from omega_turn_lab.studies.pegboard import MODES, OPEN, PUSHING, SPACINGS_BL, STUDY, placements
+from omega_turn_lab.studies.rows import Row, write_json
 from omega_turn_lab.studies.run import ROBOT
 from omega_turn_lab.studies.study import Outcome, Plan
 from omega_turn_lab.studies.tasks import Task
@@ -34,6 +34,8 @@ def made_up(task: Task) -> dict[str, Any]:
         'angle_deg': angle,
         'total_deg': 2.0 * angle,
         'limits_broken': 0,
+        'energy': {'largest_excess': 1e-12},
+        'largest_offsets': [0.1, 0.2],
         'time': np.arange(frames, dtype=float).tolist(),
         'poses': poses.tolist(),
         'yaw_angles': np.zeros((frames, task.robot.n_yaw)).tolist(),
@@ -50,16 +52,21 @@ def tried() -> Outcome:
     return Outcome(plan, designed, {}, {t: made_up(t) for t in STUDY.trials(found)})
 
 
-def value(outcome: Outcome, case: str, quantity: str) -> float | None:
-    (row,) = [r for r in STUDY.rows(outcome) if (r.case, r.quantity) == (case, quantity)]
+@pytest.fixture(scope='module')
+def table(tried: Outcome) -> list[Row]:
+    return STUDY.rows(tried)
+
+
+def value(table: list[Row], case: str, quantity: str) -> float | None:
+    (row,) = [r for r in table if (r.case, r.quantity) == (case, quantity)]
     return row.pybullet
 
 
 def test_open_loop_and_compliance_meet_the_same_twenty_placements_at_each_spacing(
     tried: Outcome,
 ) -> None:
-    assert len(placements(OPEN)) == len(placements(YIELDING)) == 20
-    among_pegs = [t for t in STUDY.trials(tried) if t.terrain.kind == 'pegboard']
+    assert len(placements(OPEN)) == len(placements(PUSHING)) == 20
+    among_pegs = [t for t in STUDY.trials(tried) if t.terrain.kind == 'pegboard' and t.cycles == 2]
     for spacing in SPACINGS_BL:
         seeds = {
             mode: [
@@ -67,30 +74,35 @@ def test_open_loop_and_compliance_meet_the_same_twenty_placements_at_each_spacin
                 for t in among_pegs
                 if t.terrain.spacing_bl == spacing and t.compliance == MODES[mode]
             ]
-            for mode in (OPEN, YIELDING)
+            for mode in (OPEN, PUSHING)
         }
-        assert sorted(seeds[OPEN]) == sorted(seeds[YIELDING]) == list(range(20))
+        assert sorted(seeds[OPEN]) == sorted(seeds[PUSHING]) == list(range(20))
 
 
 def test_gain_is_paired_by_placement_so_its_interval_leaves_their_spread_out(
-    tried: Outcome,
+    table: list[Row],
 ) -> None:
     for mode in MODES:
         if mode == OPEN:
             continue
         case = f'0.4 BL, {mode}'
         for quantity in ('gain', 'gain_low', 'gain_high'):
-            assert value(tried, case, quantity) == pytest.approx(GAIN)
-    assert value(tried, '0.4 BL, yielding', 'angle_std') == pytest.approx(1.45, abs=0.01)
-    assert value(tried, '0.4 BL, yielding', 'ratio') == pytest.approx(54.0 / 42.0)
+            assert value(table, case, quantity) == pytest.approx(GAIN)
+    assert value(table, '0.4 BL, pushing', 'angle_std') == pytest.approx(1.45, abs=0.01)
+    assert value(table, '0.4 BL, pushing', 'ratio') == pytest.approx(54.0 / 42.0)
 
 
-def test_file_tells_every_trial_but_not_its_motion(tried: Outcome, tmp_path: Path) -> None:
+def test_file_tells_every_trial_but_not_its_motion(
+    tried: Outcome, table: list[Row], tmp_path: Path
+) -> None:
     path = tmp_path / 'pegboard.json'
-    write_json(path, STUDY.name, STUDY.rows(tried), 3, 1.0, STUDY.records(tried))
+    write_json(path, STUDY.name, table, 3, 1.0, STUDY.records(tried))
     record = json.loads(path.read_text())
     assert len(record['trials']) == len(tried.tried)
-    named = {(t['terrain'], t['spacing_bl'], t['mode'], t['seed']) for t in record['trials']}
+    named = {
+        (t['terrain'], t['spacing_bl'], t['mode'], t['seed'], t['cycles'])
+        for t in record['trials']
+    }
     assert len(named) == len(record['trials'])
     assert all('poses' not in t and 'angle_deg' in t for t in record['trials'])
 
@@ -108,7 +120,7 @@ def test_without_pybullet_only_open_ground_is_told(tried: Outcome, tmp_path: Pat
     bare = Outcome(tried.plan, tried.designed)
     assert {row.case for row in STUDY.rows(bare)} == {
         'open ground, open loop',
-        'open ground, yielding',
+        'open ground, pushing',
     }
     assert all(row.pybullet is None for row in STUDY.rows(bare))
     STUDY.draw(bare, tmp_path)

@@ -15,7 +15,8 @@ from rosgraph_msgs.msg import Clock
 from omega_turn_ros.gaits.library import load_gait
 from omega_turn_ros.nodes.time import nanoseconds_of
 from omega_turn_ros.robot import load_robot
-from omega_turn_sim_bridge.simulation import Simulation, SimulationConfig
+from omega_turn_sim_bridge.simulation import Simulation
+from omega_turn_sim_bridge.simulation_config import SimulationConfig
 from omega_turn_sim_bridge.terrain_config import load_terrain
 
 DOMAIN = 87

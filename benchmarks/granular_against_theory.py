@@ -16,7 +16,8 @@ from omega_turn_ros.mechanics.chain import PlanarChain
 from omega_turn_ros.mechanics.force_laws import GranularResistance
 from omega_turn_ros.mechanics.quasi_static import QuasiStatic
 from omega_turn_ros.robot import Robot, load_robot
-from omega_turn_sim_bridge.simulation import Simulation, SimulationConfig
+from omega_turn_sim_bridge.simulation import Simulation
+from omega_turn_sim_bridge.simulation_config import SimulationConfig
 from omega_turn_sim_bridge.terrain_config import TerrainConfig
 
 GAITS = ('omega', 'offset', 'geometric')

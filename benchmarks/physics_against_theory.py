@@ -14,7 +14,7 @@ from omega_turn_ros.gaits.two_wave_gait import TwoWaveGait
 from omega_turn_ros.mechanics.chain import PlanarChain
 from omega_turn_ros.mechanics.trajectory import heading_along
 from omega_turn_ros.robot import Robot, load_robot
-from omega_turn_sim_bridge.simulation import SimulationConfig
+from omega_turn_sim_bridge.simulation_config import SimulationConfig
 from omega_turn_sim_bridge.terrain_config import load_terrain
 
 

@@ -59,7 +59,8 @@ class LeggedTrial:
             and the motion: `fraction` of the cycle, `poses` x [m], y [m], heading [rad], `angles`
             of all joints [rad].
         """
-        from omega_turn_sim_bridge.simulation import Simulation, SimulationConfig
+        from omega_turn_sim_bridge.simulation import Simulation
+        from omega_turn_sim_bridge.simulation_config import SimulationConfig
 
         config = SimulationConfig(friction=self.friction, static_friction=self.static_friction)
         steps = round(READING / config.time_step)

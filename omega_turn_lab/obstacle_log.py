@@ -9,7 +9,7 @@ from omega_turn_lab.obstacle_trial import READING, STEP_LIMIT, ObstacleTrial, Re
 from omega_turn_ros.compliance.admittance import stored_energy, wave_jacobian
 from omega_turn_ros.compliance.controller import ComplianceConfig, ComplianceState
 from omega_turn_ros.gaits.controller_state import Output
-from omega_turn_sim_bridge.simulation import Observation
+from omega_turn_sim_bridge.simulation_config import Observation
 
 Array = NDArray[np.float64]
 

@@ -37,7 +37,8 @@ from omega_turn_ros.robot import Robot
 from omega_turn_sim_bridge.terrain_config import TerrainConfig
 
 if TYPE_CHECKING:
-    from omega_turn_sim_bridge.simulation import Observation, Simulation
+    from omega_turn_sim_bridge.simulation import Simulation
+    from omega_turn_sim_bridge.simulation_config import Observation
 
 Array = NDArray[np.float64]
 Result = dict[str, Any]
@@ -122,7 +123,8 @@ class ObstacleTrial:
             `yaw_angles` [rad].
         """
         from omega_turn_lab.obstacle_log import TrialLog
-        from omega_turn_sim_bridge.simulation import Simulation, SimulationConfig
+        from omega_turn_sim_bridge.simulation import Simulation
+        from omega_turn_sim_bridge.simulation_config import SimulationConfig
 
         config = SimulationConfig(
             terrain=self.terrain,

@@ -12,7 +12,8 @@ from omega_turn_ros.design.calibrate import straightest_phase
 from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.gaits.wave_gait import WaveGait
 from omega_turn_ros.robot import Robot
-from omega_turn_sim_bridge.simulation import Simulation, SimulationConfig
+from omega_turn_sim_bridge.simulation import Simulation
+from omega_turn_sim_bridge.simulation_config import SimulationConfig
 
 Array = NDArray[np.float64]
 

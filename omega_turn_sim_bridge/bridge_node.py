@@ -25,7 +25,8 @@ from omega_turn_ros.nodes.qos import COMMAND, STATE
 from omega_turn_ros.nodes.runner import run_node
 from omega_turn_ros.nodes.time import nanoseconds_of, stamp_of
 from omega_turn_ros.robot import load_robot
-from omega_turn_sim_bridge.simulation import Observation, Simulation, SimulationConfig
+from omega_turn_sim_bridge.simulation import Simulation
+from omega_turn_sim_bridge.simulation_config import Observation, SimulationConfig
 from omega_turn_sim_bridge.terrain_config import TerrainConfig, load_terrain
 
 IDLE_PERIOD = 0.0005  # [s] between steps when running as fast as possible

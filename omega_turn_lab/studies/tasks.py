@@ -140,7 +140,7 @@ class PhysicsTask:
     def run(self) -> Result:
         """Return the angle per cycle [deg], swept areas [BL^2] and the motion itself."""
         from omega_turn_lab.physics_trial import play_cycle
-        from omega_turn_sim_bridge.simulation import SimulationConfig
+        from omega_turn_sim_bridge.simulation_config import SimulationConfig
 
         config = SimulationConfig(terrain=self.terrain, friction=self.friction)
         trial = play_cycle(self.robot, self.gait, self.period, config, AREA_SAMPLES)

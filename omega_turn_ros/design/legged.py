@@ -80,5 +80,8 @@ def design_legged(recipe: LeggedRecipe, robot: LeggedRobot) -> tuple[LeggedDesig
     feet = motion.feet.places(path).reshape(-1, robot.n_pairs, 2, 2)
     clearance = float(np.linalg.norm(np.diff(feet, axis=1), axis=-1).min())
     design = LeggedDesign(gait, calibration.largest_angle, clearance, 2 * SCALES)
-    entry = LibraryGait(recipe.name, recipe.description, robot.name, theta_max, gait, calibration)
+    straight = gait.angles(np.linspace(0.0, 2.0 * np.pi, SAMPLES + 1), 0.0)
+    advance = float(motion.pose_along(straight)[-1, 0])
+    about = (recipe.name, recipe.description, robot.name)
+    entry = LibraryGait(*about, theta_max, gait, calibration, advance)
     return design, entry

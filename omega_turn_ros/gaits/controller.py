@@ -24,6 +24,7 @@ from omega_turn_ros.gaits.controller_state import (
     Mode,
     Output,
 )
+from omega_turn_ros.gaits.drive import Drive, Pace, pace_of
 from omega_turn_ros.gaits.library import LibraryGait
 from omega_turn_ros.gaits.limits import JointLimits, limit_command
 from omega_turn_ros.gaits.move import Move, move_between, move_through
@@ -122,9 +123,30 @@ class GaitController:
             return state  # already on the way to rest, where the new turn is planned
         return self._move_to_rest(state)
 
+    def request_drive(self, state: ControllerState, drive: Drive) -> ControllerState:
+        """Take over a velocity, which counts while there is no turn.
+
+        The pace follows within `phase_ramp_time`, the turning rate with the next cycle. Nothing
+        wanted holds the posture of the moment.
+
+        Raises:
+            BadInputError: the controller is stopped.
+        """
+        if state.mode is Mode.STOPPED:
+            raise BadInputError('cmd_vel', drive, 'no command while stopped: call reset first')
+        return replace(state, drive=drive)
+
+    def pace(self, state: ControllerState) -> Pace:
+        """Pace of the cycles: full in a turn, else that of the velocity wanted."""
+        if state.goal is not None:
+            return Pace(1.0, state.scale)
+        return pace_of(state.drive, self.gait, self.config.period)
+
     def stop(self, state: ControllerState) -> ControllerState:
         """Freeze the command where it is and drop the turn; latched until `reset`."""
-        return replace(state, mode=Mode.STOPPED, goal=None, move=None, phase_rate=0.0)
+        return replace(
+            state, mode=Mode.STOPPED, goal=None, move=None, phase_rate=0.0, drive=Drive()
+        )
 
     def reset(self, state: ControllerState) -> ControllerState:
         """Leave the stop. Moves nothing: the posture is held until the next turn."""
@@ -206,10 +228,13 @@ class GaitController:
         """Return the state's changes, the wanted command and the predicted heading change."""
         left = 2.0 * math.pi - state.turned
         acceleration = self._cycle_rate / self.config.phase_ramp_time
-        rate = min(state.phase_rate + acceleration * dt, self._cycle_rate)
-        # The floor carries the phase over the end, where the braking law alone would creep.
-        braking = max(math.sqrt(2.0 * acceleration * left), 0.05 * self._cycle_rate)
-        rate = min(rate, braking)
+        wanted = self.pace(state).share * self._cycle_rate
+        change = acceleration * dt
+        rate = min(max(wanted, state.phase_rate - change), state.phase_rate + change)
+        if not self._goes_on(state):
+            # The floor carries the phase over the end, where the braking law alone would creep.
+            floor = min(0.05 * self._cycle_rate, wanted)
+            rate = min(rate, max(math.sqrt(2.0 * acceleration * left), floor))
         turned = min(state.turned + rate * dt, 2.0 * math.pi)
         # The cycle ends in its own shape: unbending offsets would count as heading never turned.
         closing = (2.0 * math.pi - turned) / (self._cycle_rate * GATE_TIME)
@@ -222,6 +247,16 @@ class GaitController:
         target = self._played.at(table.start_phase + turned, state.scale, offsets)
         changes = {'turned': turned, 'phase_rate': rate, 'gate': gate}
         return changes, target, predicted * state.ratio
+
+    def _drives(self, state: ControllerState) -> bool:
+        return state.goal is None and self.pace(state).share > 0.0
+
+    def _goes_on(self, state: ControllerState) -> bool:
+        """Whether the next cycle begins where this one ends, at no less than its pace."""
+        if state.goal is not None:
+            return False
+        pace = self.pace(state)
+        return pace.share > 0.0 and self._start_equal(pace.scale, state.scale)
 
     def _next_motion(self, state: ControllerState, dt: float) -> ControllerState:
         """Go from one motion to the next where one has ended."""
@@ -241,11 +276,14 @@ class GaitController:
             return self._plan_from_rest(replace(state, mode=Mode.HOLDING, move=None))
         if state.mode is Mode.CYCLING and state.turned >= 2.0 * math.pi:
             return self._end_cycle(state)
+        if state.mode is Mode.HOLDING and self._drives(state):
+            return self._move_to_rest(state)
         return state
 
     def _plan_from_rest(self, state: ControllerState) -> ControllerState:
         if state.goal is None:
-            return state
+            pace = self.pace(state)
+            return self._move_to_start(state, pace.scale, 0.0) if pace.share else state
         close = abs(state.remaining) <= self._tolerance
         if state.cycles and (close or state.cycles >= state.budget):
             return replace(state, goal=None, shortfall=state.remaining)
@@ -254,12 +292,20 @@ class GaitController:
 
     def _end_cycle(self, state: ControllerState) -> ControllerState:
         """Judge the cycle, then choose the next one or the way back to rest."""
-        state = self._judge_cycle(state)
         bend = self.gait.calibration.bend_heading_of(state.scale)
-        rest = (state.remaining + bend) if state.goal is not None else 0.0
+        if state.goal is None:
+            pace = self.pace(state)
+            return (
+                self._go_on(state, pace.scale, bend) if pace.share else self._move_to_rest(state)
+            )
+        state = self._judge_cycle(state)
+        rest = state.remaining + bend
         if abs(rest) <= self._tolerance or state.cycles >= state.budget:
             return self._move_to_rest(state)
-        scale = plan_turn(rest, self.gait.calibration, state.ratio).scale
+        return self._go_on(state, plan_turn(rest, self.gait.calibration, state.ratio).scale, bend)
+
+    def _go_on(self, state: ControllerState, scale: float, bend: float) -> ControllerState:
+        """Go from one cycle to the next, through rest where the gait must."""
         if not self.gait.gait.scales_size and not self._start_alike(scale, state.scale):
             return self._move_to_rest(state)  # and plan again from there
         return self._move_to_start(state, scale, bend)
@@ -315,8 +361,9 @@ class GaitController:
 
     def _start_alike(self, scale: float, other: float) -> bool:
         """Whether cycles of two scales begin near enough to each other to go on without a rest."""
-        if abs(scale - other) <= SAME_SCALE:
-            return True
+        return abs(scale - other) <= SAME_SCALE or self._start_equal(scale, other)
+
+    def _start_equal(self, scale: float, other: float) -> bool:
         start = self.gait.calibration.start_phase
         first, second = (self._played.at(start, s, (0.0, 0.0)) for s in (scale, other))
         return bool(np.abs(first - second).max() < SAME_SHAPE)

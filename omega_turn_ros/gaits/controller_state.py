@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from omega_turn_ros.gaits.drive import Drive
 from omega_turn_ros.gaits.heading import HeadingTracker
 from omega_turn_ros.gaits.jam import JamWatch
 from omega_turn_ros.gaits.move import Move
@@ -102,6 +103,7 @@ class ControllerState:
         catching_up: time since joint states came back [s]; None in normal running.
         limited: commands changed by a limit so far.
         jam: whether the robot is stuck.
+        drive: wanted velocity while there is no turn.
     """
 
     mode: Mode = Mode.WAITING
@@ -125,6 +127,7 @@ class ControllerState:
     catching_up: float | None = None
     limited: int = 0
     jam: JamWatch = field(default_factory=JamWatch)
+    drive: Drive = field(default_factory=Drive)
 
     @property
     def remaining(self) -> float:

@@ -36,6 +36,7 @@ class LibraryGait:
         theta_max: largest joint angle over the cycle at scale 1 [rad].
         gait: what is played. Scale +1 turns counter-clockwise.
         calibration: angle over scale and phase.
+        advance: way forward per cycle at scale 0 [m]; 0 of a gait that only turns.
     """
 
     name: str
@@ -44,6 +45,7 @@ class LibraryGait:
     theta_max: float
     gait: Gait
     calibration: Calibration
+    advance: float = 0.0
 
     @property
     def waves(self) -> WaveGait:
@@ -75,13 +77,16 @@ def load_gait(name: str) -> LibraryGait:
     """
     data = read_config('gaits', name)
     expected = {'name', 'description', 'kind', 'robot', 'theta_max', 'parameters', 'calibration'}
-    if set(data) != expected:
+    if set(data) - {'advance'} != expected:
         raise BadInputError('gait', name, f'a gait file ({fields_apart(data, expected)})')
     if data['kind'] not in KINDS:
         raise BadInputError('gait kind', data['kind'], f'one of {sorted(KINDS)}')
     theta_max = data['theta_max']
     if not isinstance(theta_max, (int, float)) or not 0.0 < theta_max <= math.pi:
         raise BadInputError('gait theta_max', theta_max, 'an angle in 0..pi [rad]')
+    advance = data.get('advance', 0.0)
+    if not isinstance(advance, (int, float)) or not 0.0 <= advance < math.inf:
+        raise BadInputError('gait advance', advance, 'a way >= 0 [m]')
     return LibraryGait(
         str(data['name']),
         str(data['description']),
@@ -89,17 +94,20 @@ def load_gait(name: str) -> LibraryGait:
         float(theta_max),
         KINDS[data['kind']].from_mapping(data['parameters']),
         calibration_from_mapping(data['calibration']),
+        float(advance),
     )
 
 
 def gait_to_mapping(entry: LibraryGait) -> dict[str, Any]:
     """Return what `load_gait` reads back."""
+    advance = {'advance': round(entry.advance, 6)} if entry.advance else {}
     return {
         'name': entry.name,
         'description': entry.description,
         'kind': next(kind for kind, cls in KINDS.items() if isinstance(entry.gait, cls)),
         'robot': entry.robot,
         'theta_max': round(entry.theta_max, 9),
+        **advance,
         'parameters': entry.gait.to_mapping(),
         'calibration': entry.calibration.to_mapping(),
     }

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from builtin_interfaces.msg import Time
+from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from rclpy.context import Context
 from rclpy.node import Node
@@ -16,6 +17,7 @@ from std_srvs.srv import Trigger
 
 from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.gaits.controller_state import ControllerState, Inputs, Mode, Output
+from omega_turn_ros.gaits.drive import Drive
 from omega_turn_ros.nodes.command_output import CommandOutput
 from omega_turn_ros.nodes.gait_parameters import GAIT_PARAMETERS, make_controller
 from omega_turn_ros.nodes.health import PUBLISH_EVERY, Freshness, Health, steady_clock
@@ -60,7 +62,7 @@ class GaitNode(Node):
         self._robot = load_robot(self._settings['robot'])
         self._health = Health(self)
         self._states_seen, self._odom_seen, self._amplitudes_seen = (Freshness() for _ in range(3))
-        self._asked = Freshness()
+        self._asked, self._driven = Freshness(), Freshness()
         self._apply(self._settings.values)
         self._period = 1.0 / self._settings['rate']
         self._time = StepTimer(2.5 * self._period, self._period)
@@ -92,6 +94,7 @@ class GaitNode(Node):
         on_request = self._read_requests if self._lock_step else None
         state_qos = STATE if self._lock_step else STATE_INPUT
         self._turn_angle = Inbox(self, Float64, 'turn_angle', REQUEST, on_request)
+        self._cmd_vel = Inbox(self, Twist, 'cmd_vel', REQUEST)
         self._joint_states: Inbox[Any] = Inbox(
             self, JointState, 'joint_states', state_qos, on_question, raw=True
         )
@@ -130,6 +133,7 @@ class GaitNode(Node):
         for seen, timeout in (
             (self._states_seen, 'state_timeout'),
             (self._odom_seen, 'odom_timeout'),
+            (self._driven, 'cmd_vel_timeout'),
             (self._amplitudes_seen, 'amplitude_timeout'),
         ):
             # In lock step stamps tell what belongs together; the wall clock has no say.
@@ -139,6 +143,7 @@ class GaitNode(Node):
         now = self.get_clock().now()
         self._seldom.tick()
         self._read_requests()
+        self._read_drive()
         self._read_inputs()
         self._advance(self._time.step(now.nanoseconds), now.to_msg())
 
@@ -160,6 +165,7 @@ class GaitNode(Node):
         if stamp == self._answered or self._missing() - self._absent:
             return
         self._answered = stamp
+        self._read_drive()
         self._advance(self._time.step(stamp), self._last_stamp)
 
     def _missing(self) -> set[str]:
@@ -179,6 +185,22 @@ class GaitNode(Node):
                 self._asked.mark()
                 self._health.note(f'turn {message.data == 0.0}', text_of_request(message.data))
                 self._report_remaining()
+
+    def _read_drive(self) -> None:
+        for message in self._cmd_vel.drain():
+            try:
+                drive = Drive(message.linear.x, message.angular.z)
+                self._state = self._controller.request_drive(self._state, drive)
+            except BadInputError as error:
+                self._health.refuse('cmd_vel', str(error))
+            else:
+                self._driven.mark()
+                if drive.linear > 0.0 and not self._controller.gait.advance:
+                    name = self._controller.gait.name
+                    self._health.warn('speed', f'gait {name} only turns: linear.x is left out')
+        if not self._driven.fresh and self._state.drive != Drive():
+            self._state = self._controller.request_drive(self._state, Drive())
+            self._health.warn('cmd_vel', 'no cmd_vel: the robot holds where it is')
 
     def _read_inputs(self) -> None:
         positions, heading, offsets = self._inputs.positions, self._heading, self._inputs.offsets
@@ -310,6 +332,7 @@ class GaitNode(Node):
             'scale': state.scale,
             'ground ratio': state.ground_ratio,
             'shortfall [rad]': state.shortfall,
+            'drive [m/s, rad/s]': (state.drive.linear, state.drive.angular),
             'commands limited': state.limited,
             'cycles in a jam': state.jam.cycles,
             'heading jumps left out': state.heading.jumps,

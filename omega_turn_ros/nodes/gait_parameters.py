@@ -55,6 +55,7 @@ GAIT_PARAMETERS = (
         0.1,
         3600.0,
     ),
+    Spec('cmd_vel_timeout', 0.5, 'cmd_vel older than this counts as 0.', 's', 0.02, 60.0),
     Spec('odom_timeout', 0.5, 'odom older than this: heading is predicted.', 's', 0.02, 60.0),
     Spec(
         'amplitude_timeout',

@@ -6,7 +6,8 @@ import numpy as np
 import pybullet
 
 from omega_turn_ros.gaits.library import LibraryGait
-from omega_turn_sim_bridge.simulation import Observation, Simulation
+from omega_turn_sim_bridge.simulation import Simulation
+from omega_turn_sim_bridge.simulation_config import Observation
 
 PERIOD = 10.0  # [s] of a cycle, as in the paper
 READINGS_PER_SECOND = 50

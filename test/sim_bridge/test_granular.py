@@ -17,7 +17,8 @@ from omega_turn_ros.mechanics.quasi_static import QuasiStatic
 from omega_turn_ros.robot import STANDARD_GRAVITY, Robot, load_robot
 from omega_turn_sim_bridge.granular import GranularGround
 from omega_turn_sim_bridge.robot import REFLECTED_INERTIA
-from omega_turn_sim_bridge.simulation import Simulation, SimulationConfig
+from omega_turn_sim_bridge.simulation import Simulation
+from omega_turn_sim_bridge.simulation_config import SimulationConfig
 from omega_turn_sim_bridge.terrain_config import TerrainConfig, load_terrain
 
 LAW = GranularResistance.of_ratio(3.0)

@@ -16,7 +16,8 @@ from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.mechanics.legged import LeggedMotion
 from omega_turn_ros.robot import LeggedRobot, load_robot
 from omega_turn_sim_bridge.legged import foot_links, legged_urdf
-from omega_turn_sim_bridge.simulation import Simulation, SimulationConfig
+from omega_turn_sim_bridge.simulation import Simulation
+from omega_turn_sim_bridge.simulation_config import SimulationConfig
 from omega_turn_sim_bridge.stiction import Stiction
 from omega_turn_sim_bridge.terrain_config import load_terrain
 

@@ -26,7 +26,8 @@ from omega_turn_ros.compliance.external_torque import (
 from omega_turn_ros.gaits.library import LibraryGait, load_gait
 from omega_turn_ros.mechanics.chain import PlanarChain
 from omega_turn_ros.robot import Robot, load_robot
-from omega_turn_sim_bridge.simulation import Observation, Simulation, SimulationConfig
+from omega_turn_sim_bridge.simulation import Simulation
+from omega_turn_sim_bridge.simulation_config import Observation, SimulationConfig
 
 
 @pytest.fixture(scope='module')

@@ -11,7 +11,8 @@ from scene import body_centres
 from omega_turn_ros.gaits.library import LibraryGait, load_gait
 from omega_turn_ros.mechanics.resting_chain import FOOT_STIFFNESS, RestingChain
 from omega_turn_ros.robot import Robot, load_robot
-from omega_turn_sim_bridge.simulation import Simulation, SimulationConfig
+from omega_turn_sim_bridge.simulation import Simulation
+from omega_turn_sim_bridge.simulation_config import SimulationConfig
 
 READING = 0.01  # [s] between two commands
 PERIOD = 8.0  # [s] of a cycle

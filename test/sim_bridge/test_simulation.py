@@ -13,7 +13,8 @@ from scene import body_centres, body_yaws, normal_forces
 from omega_turn_ros.errors import BadInputError, SimulationError
 from omega_turn_ros.robot import Robot, load_robot
 from omega_turn_sim_bridge.robot import FOOT_CLEARANCE, ride_height
-from omega_turn_sim_bridge.simulation import Observation, Simulation, SimulationConfig
+from omega_turn_sim_bridge.simulation import Simulation
+from omega_turn_sim_bridge.simulation_config import Observation, SimulationConfig
 from omega_turn_sim_bridge.terrain_config import TerrainConfig
 
 FIELDS = ('positions', 'velocities', 'efforts', 'pose', 'twist')

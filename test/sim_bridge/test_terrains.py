@@ -15,7 +15,8 @@ from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.resources import config_names
 from omega_turn_ros.robot import Robot, load_robot
 from omega_turn_sim_bridge.peg_lattice import peg_positions
-from omega_turn_sim_bridge.simulation import Simulation, SimulationConfig
+from omega_turn_sim_bridge.simulation import Simulation
+from omega_turn_sim_bridge.simulation_config import SimulationConfig
 from omega_turn_sim_bridge.terrain_config import KINDS, TerrainConfig, load_terrain
 
 SPACINGS = (0.2, 0.3, 0.6)  # [BL]

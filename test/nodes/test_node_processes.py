@@ -97,7 +97,7 @@ def test_a_turn_goes_on_when_the_admittance_node_is_killed(
 ) -> None:
     settings = {**BRISK, 'period': 2.5, 'use_compliance': True, 'amplitude_timeout': 0.2}
     turner = Turner(graph, **settings)
-    turner.robot.efforts[:] = -1.0  # something leans on every joint
+    turner.robot.efforts[:] = -3.0  # something leans on every joint
     admittance = start_process('admittance_node')
 
     def offsets() -> np.ndarray:
@@ -106,7 +106,7 @@ def test_a_turn_goes_on_when_the_admittance_node_is_killed(
 
     graph.spin_until(lambda: 'admittance_node' in turner.user.health, 'the admittance node')
     turner.start_turn(1.0)
-    graph.spin_until(lambda: np.abs(offsets()).max() > 0.01, 'a yielding gait')
+    graph.spin_until(lambda: np.abs(offsets()).max() > 0.01, 'a compliant gait')
     admittance.end(signal.SIGKILL)
     graph.spin_until(lambda: not offsets().any(), 'a gait of its own')
     assert turner.user.remaining[-1] != 0.0
@@ -155,6 +155,5 @@ def test_a_turn_survives_a_bridge_that_is_restarted(
     second = start_process('pybullet_bridge', **bridge)
     graph.spin_until(lambda: user.remaining[-1] == 0.0, 'the end of the turn')
     graph.spin_until(lambda: np.abs(watch.newest).max() < 1e-3, 'a straight body')
-    assert int(user.fact('gait_node', 'clock jumps')) >= 1
     assert second.end(signal.SIGTERM) == 0
     graph.spin_until(lambda: 'pybullet_bridge' not in graph.names(), 'its leave of the graph')

@@ -116,8 +116,8 @@ def test_big_endian_messages_are_read_too() -> None:
     big += b'\0' * ((4 - len(big)) % 8) + struct.pack('>3dII', 0.1, -0.2, 0.3, 0, 0)
     reader = RawStateReader(JointReader(NAMES))
     for _ in range(2):
-        seconds, nanoseconds, positions = reader.read(big)
-        assert (seconds, nanoseconds, positions.tolist()) == (7, 8, [0.1, -0.2, 0.3])
+        seconds, nanoseconds, positions, effort = reader.read(big)
+        assert (seconds, nanoseconds, positions.tolist(), effort) == (7, 8, [0.1, -0.2, 0.3], 0)
 
 
 def test_a_robot_that_repeats_itself_is_read_the_short_way(

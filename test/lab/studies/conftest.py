@@ -19,7 +19,9 @@ from omega_turn_ros.gaits.two_wave_gait import TwoWaveGait
 from omega_turn_ros.gaits.wave_gait import WaveGait
 from omega_turn_ros.robot import load_robot
 
-PAPER = [name for name in available() if name not in ('height', 'beyond', 'pegboard', 'legged')]
+# Those whose numbers are of designed gaits; the others have tests of their own.
+OTHERS = ('height', 'beyond', 'pegboard', 'rocks', 'legged')
+PAPER = [name for name in available() if name not in OTHERS]
 
 
 def unsearched(problem: DesignProblem, seed: int = 0, area_weight: float = 0.0) -> Design:

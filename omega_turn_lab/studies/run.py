@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from importlib.util import find_spec
@@ -12,7 +12,7 @@ from pathlib import Path
 from omega_turn_lab.folder import make_folder
 from omega_turn_lab.studies import NAMES
 from omega_turn_lab.studies.executor import DaskExecutor, Executor, LocalExecutor, compute
-from omega_turn_lab.studies.rows import print_table, write_json
+from omega_turn_lab.studies.rows import Row, print_table, write_json
 from omega_turn_lab.studies.store import ResultStore
 from omega_turn_lab.studies.study import Outcome, Plan, Study
 from omega_turn_lab.studies.tasks import PhysicsTask
@@ -77,9 +77,7 @@ def run_reproduce(options: ReproduceOptions) -> int:
     studies = [load_study(name) for name in names]
     executor = _checked(options)
     outcome = compute_outcome(studies, options, executor)
-    for study in studies:
-        rows = study.rows(outcome)
-        study.draw(outcome, options.out)
+    for study, rows in zip(studies, _told(names, outcome, options)):
         seconds = time.perf_counter() - began
         path = options.out / f'{study.name}.json'
         trials = study.records(outcome)
@@ -89,6 +87,24 @@ def run_reproduce(options: ReproduceOptions) -> int:
     return 0
 
 
+def _told(
+    names: Sequence[str], outcome: Outcome, options: ReproduceOptions
+) -> Iterator[list[Row]]:
+    """Rows of each study, in order, its figures drawn: where there are several, on all cores."""
+    from joblib import Parallel, delayed
+
+    jobs = options.jobs if len(names) > 1 else 1
+    pool = Parallel(jobs, batch_size=1, return_as='generator')
+    yield from pool(delayed(_tell)(name, outcome, options.out) for name in names)
+
+
+def _tell(name: str, outcome: Outcome, out: Path) -> list[Row]:
+    study = load_study(name)
+    rows = study.rows(outcome)
+    study.draw(outcome, out)
+    return rows
+
+
 def compute_outcome(
     studies: Sequence[Study], options: ReproduceOptions, executor: Executor
 ) -> Outcome:
@@ -96,6 +112,7 @@ def compute_outcome(
     store = ResultStore(options.out / CACHE, options.fresh)
     plan = Plan(load_robot(ROBOT), options.seed)
     designs = [task for study in studies for task in study.designs(plan)]
+    designs.sort(key=lambda task: -task.cost)  # a long case begun last would be waited for
     outcome = Outcome(plan, compute(designs, executor, store, 'designing gaits'))
     if not options.pybullet:
         return outcome

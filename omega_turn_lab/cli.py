@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import re
 import signal
 import sys
 from pathlib import Path
@@ -11,9 +12,10 @@ from pathlib import Path
 from omega_turn_lab.studies import NAMES as STUDIES
 from omega_turn_lab.worm.arguments import add_worm
 from omega_turn_ros import __version__
-from omega_turn_ros.errors import OmegaTurnError
+from omega_turn_ros.errors import BadInputError, OmegaTurnError
 
 INTERRUPTED = 130  # exit code
+LARGEST_SEED = 4_000_000  # searches take a thousand seeds each, 32 bits in all
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -85,8 +87,8 @@ def _add_turn(parser: argparse.ArgumentParser) -> None:
 def _add_design(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--robot', default='limbless16', help='name in config/robots, or a path')
     parser.add_argument('--all', action='store_true', help='design the whole library')
-    parser.add_argument('--k-f', type=float, default=1.5, help='waves of the forward wave')
-    parser.add_argument('--k-t', type=float, default=1.0, help='waves of the turning wave')
+    parser.add_argument('--k-f', type=float, help='waves of the forward wave, default 1.5')
+    parser.add_argument('--k-t', type=float, help='waves of the turning wave, default 1')
     parser.add_argument(
         '--theta-max-deg',
         type=_angle,
@@ -95,11 +97,11 @@ def _add_design(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         '--method',
-        default='direct',
-        help='direct (turn per cycle), speed (turn per second), fourier_1 or fourier_2 (richer)',
+        help='direct (turn per cycle, the default), speed (turn per second), hierarchical (the '
+        "paper's way), fourier_1 or fourier_2 (richer)",
     )
-    parser.add_argument('--name', default='', help='of the gait file; made of the rest if absent')
-    parser.add_argument('--seed', type=int, default=0)
+    parser.add_argument('--name', help='of the gait file; made of the rest if absent')
+    parser.add_argument('--seed', type=_seed, default=0)
     parser.add_argument('--out', type=Path, default=Path('gaits'), help='folder to write')
     parser.set_defaults(run=_run_design)
 
@@ -109,7 +111,7 @@ def _add_reproduce(parser: argparse.ArgumentParser) -> None:
         'name', choices=(*STUDIES, 'all'), metavar='NAME', help=f'{", ".join(STUDIES)} or all'
     )
     parser.add_argument('--out', type=Path, default=Path('out'), help='folder for the files')
-    parser.add_argument('--seed', type=int, default=0, help='of every search')
+    parser.add_argument('--seed', type=_seed, default=0, help='of every search')
     parser.add_argument('--jobs', type=int, default=-1, help='processes; -1: one per core')
     parser.add_argument('--dask', metavar='ADDRESS', help='use the workers of this scheduler')
     parser.add_argument(
@@ -145,6 +147,12 @@ def _number(text: str, expected: str) -> float:
     if math.isnan(value):
         raise argparse.ArgumentTypeError(f'{text}: expected {expected}')
     return value
+
+
+def _seed(text: str) -> int:
+    if not text.isdecimal() or int(text) > LARGEST_SEED:
+        raise argparse.ArgumentTypeError(f'{text}: expected an integer in 0..{LARGEST_SEED}')
+    return int(text)
 
 
 def _domain(text: str) -> int:
@@ -191,12 +199,23 @@ def _run_design(options: argparse.Namespace) -> int:
 
     robot = load_robot(options.robot)
     if options.all:
+        for option in ('k_f', 'k_t', 'theta_max_deg', 'method', 'name'):
+            given = getattr(options, option)
+            if given is not None:
+                flag = '--' + option.replace('_', '-')
+                raise BadInputError(flag, given, 'no such option beside --all')
         return run_design(robot, recipes_for(robot), options.seed, options.out)
-    k_f, k_t = options.k_f, options.k_t
-    limit = options.theta_max_deg or min(90.0, math.degrees(robot.position_limit))
-    name = options.name or f'k{k_f:g}_{k_t:g}_{limit:g}deg_{options.method}'.replace('.', 'p')
-    text = f'k_f = {k_f:g}, k_t = {k_t:g}, joint limit {limit:g} deg, {options.method}'
-    recipe = Recipe(name, text, k_f, k_t, limit, options.method)
+    k_f = 1.5 if options.k_f is None else options.k_f
+    k_t = 1.0 if options.k_t is None else options.k_t
+    limit = options.theta_max_deg
+    if limit is None:
+        limit = min(90.0, math.degrees(robot.position_limit))
+    method = options.method or 'direct'
+    name = options.name or f'k{k_f:g}_{k_t:g}_{limit:g}deg_{method}'.replace('.', 'p')
+    if not re.fullmatch(r'[A-Za-z0-9_-]+', name):
+        raise BadInputError('--name', name, 'letters, digits, _ and -')
+    text = f'k_f = {k_f:g}, k_t = {k_t:g}, joint limit {limit:g} deg, {method}'
+    recipe = Recipe(name, text, k_f, k_t, limit, method)
     return run_design(robot, (recipe,), options.seed, options.out)
 
 

@@ -133,6 +133,7 @@ def _account_rows(outcome: Outcome, params: dict[str, float]) -> list[Row]:
         ('all trials', 'largest_energy_excess', 'N m'): max(
             r['energy']['largest_excess'] for r in every
         ),
+        ('all trials', 'deepest_contact', 'mm'): 1e3 * max(r['deepest_contact'] for r in every),
         (f'{LONG} cycles in a jam', 'largest_offset', 'rad'): max(
             max(r['largest_offsets']) for r in long
         ),

@@ -95,18 +95,36 @@ def _rows(outcome: Outcome) -> list[Row]:
         numbers = _numbers(outcome, gait) if outcome.tried else {('angle', HARD, 'deg'): None}
         for (quantity, ground, unit), value in numbers.items():
             paper: tuple[float | None, float | None] = (None, None)
-            if params and quantity == 'angle':
+            if params and quantity == 'angle' and ground in _paper_grounds(gait):
                 paper = paper_figure(NAME, f'angle_{ground.replace(" ", "_")}', params)
             ours = theory if (quantity, ground) == ('angle', HARD) else None
             rows.append(Row(f'{gait}, {ground}', params, quantity, unit, *paper, ours, value))
     return rows
 
 
+def _paper_grounds(gait: str) -> tuple[str, ...]:
+    """Grounds on which the paper's angle is that of this gait: on rocks it complies."""
+    return (ROCKS,) if gait == COMPLIANT else (HARD,)
+
+
 def _numbers(outcome: Outcome, gait: str) -> dict[tuple[str, str, str], float | None]:
     hard, results = _tried(outcome, gait)
     spread = spread_of([result['angle_deg'] for result in results], outcome.plan.seed)
+    _, open_loop = _tried(outcome, 'omega turn')
+    gains = [b['angle_deg'] - a['angle_deg'] for a, b in zip(open_loop, results)]
+    gain = spread_of(gains, outcome.plan.seed) if gait == COMPLIANT else None
     rolled = np.mean([result['least_upright'] < ROLLED for result in results])
+    paired = (
+        {}
+        if gain is None
+        else {
+            ('gain', ROCKS, 'deg'): gain.mean,
+            ('gain_low', ROCKS, 'deg'): gain.low,
+            ('gain_high', ROCKS, 'deg'): gain.high,
+        }
+    )
     return {
+        **paired,
         ('angle', HARD, 'deg'): hard,
         ('angle', ROCKS, 'deg'): spread.mean,
         ('angle_std', ROCKS, 'deg'): spread.deviation,
@@ -161,9 +179,9 @@ def _draw_gait(axes: Axes, outcome: Outcome, gait: str, place: float) -> None:
     axes.plot(spots, found, '.', color='0.25', ms=3.0, label='one pile')
     if gait in PLANAR:
         params = params_of(_task(outcome.plan, gait))
-        for x, ground in ((left, 'hard_ground'), (right, 'rocks')):
-            mean, deviation = paper_figure(NAME, f'angle_{ground}', params)
-            if mean is not None:
+        for x, ground in ((left, HARD), (right, ROCKS)):
+            mean, deviation = paper_figure(NAME, f'angle_{ground.replace(" ", "_")}', params)
+            if mean is not None and ground in _paper_grounds(gait):
                 style: dict[str, Any] = {'marker': 'D', 'mfc': 'w', 'mec': 'k', 'ms': 4.0}
                 axes.errorbar(x, mean, deviation, color='k', label='paper, mean ± std', **style)
 

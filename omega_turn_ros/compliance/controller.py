@@ -20,6 +20,7 @@ from omega_turn_ros.compliance.external_torque import (
     external_torque_step,
     needed_torques,
 )
+from omega_turn_ros.errors import ConvergenceError
 from omega_turn_ros.mechanics.chain import PlanarChain
 
 Array = NDArray[np.float64]
@@ -99,6 +100,8 @@ class ComplianceController:
     ) -> ComplianceState:
         """Advance while a cycle is being played.
 
+        Where no torque can be predicted, the reading counts as missing.
+
         Args:
             state: as returned before.
             angles: yaw joint angles [rad], shape (N,).
@@ -108,7 +111,10 @@ class ComplianceController:
             dt: time since the last step [s], >= 0.
         """
         config = self.config
-        needed = self._needed(self.chain, angles, rates, config.torque.friction)
+        try:
+            needed = self._needed(self.chain, angles, rates, config.torque.friction)
+        except ConvergenceError:
+            return self.relax(state, dt)
         filtered, external = external_torque_step(
             state.filtered, efforts, needed, dt, config.torque
         )

@@ -94,9 +94,10 @@ class QuasiStatic(Motion):
         Returns:
             Torques on the link behind each joint, + = counter-clockwise [N m], shape (..., N).
         """
+        angles, rates = np.broadcast_arrays(np.asarray(angles, float), np.asarray(rates, float))
         xi = self.body_velocity(angles, rates).reshape(-1, 3)
         flat = (-1, self.chain.n_joints)
-        q, dq = np.reshape(angles, flat), np.reshape(rates, flat)
+        q, dq = angles.reshape(flat), rates.reshape(flat)
         state = self.chain.state(q, dq)
         slip = slip_velocities(state.points, state.velocities, xi)
         if self.law.kind != COULOMB:

@@ -14,6 +14,7 @@ from omega_turn_ros.compliance.controller import (
     ComplianceState,
 )
 from omega_turn_ros.compliance.external_torque import TorqueConfig
+from omega_turn_ros.errors import ConvergenceError
 from omega_turn_ros.gaits.library import load_gait
 from omega_turn_ros.mechanics.chain import PlanarChain
 from omega_turn_ros.mechanics.force_balance import joint_torques
@@ -121,3 +122,16 @@ def test_no_time_yields_nothing(chain: PlanarChain) -> None:
     later = controller.step(state, STILL, STILL, np.full(8, 5.0), PHASES, 0.0)
     assert later.admittance == state.admittance
     assert (later.filtered == 0.0).all()
+
+
+def test_a_reading_without_a_prediction_counts_as_missing(chain: PlanarChain) -> None:
+    def unsolved(*_: object) -> np.ndarray:
+        raise ConvergenceError('no balance')
+
+    good = ComplianceController(chain, YIELDING)
+    state = held(good, np.full(8, -3.0), 1.0)
+    later = ComplianceController(chain, YIELDING, unsolved).step(
+        state, STILL, STILL, np.full(8, -3.0), PHASES, DT
+    )
+    assert later.admittance == good.relax(state, DT).admittance
+    assert not later.external.any()

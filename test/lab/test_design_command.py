@@ -69,3 +69,29 @@ def test_a_robot_that_cannot_turn_is_refused_by_name(
 def test_the_shipped_library_is_designed_for_the_shipped_robot() -> None:
     for name in ('omega', 'offset', 'geometric', 'omega_fast'):
         assert read_config('gaits', name)['robot'] == 'limbless16'
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'named'),
+    [
+        (['--theta-max-deg', '0'], 'theta_max'),
+        (['--name', '../evil'], '--name'),
+        (['--name', 'a/b'], '--name'),
+        (['--all', '--k-t', '99'], '--k-t'),
+        (['--all', '--method', 'direct'], '--method'),
+    ],
+)
+def test_what_would_do_something_else_than_asked_is_refused_before_any_search(
+    arguments: list[str], named: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(['design', *arguments, '--out', str(tmp_path / 'gaits')]) == 2
+    assert named in capsys.readouterr().err
+    assert not list(tmp_path.rglob('*.yaml'))
+
+
+@pytest.mark.parametrize('seed', ['-1', '5000000', 'x'])
+def test_a_seed_no_search_can_use_is_refused(seed: str) -> None:
+    for command in (['design'], ['reproduce', 'flat']):
+        with pytest.raises(SystemExit) as ended:
+            main([*command, '--seed', seed])
+        assert ended.value.code == 2

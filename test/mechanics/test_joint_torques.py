@@ -165,3 +165,12 @@ def test_motors_do_the_work_that_any_ground_takes(
     assert slipping.sum() > 20
     assert (done > 0.0).all()
     np.testing.assert_allclose(done[slipping], taken[slipping], rtol=1e-6)
+
+
+@pytest.mark.parametrize('law', [CoulombFriction(), GranularResistance()])
+def test_one_shape_meets_many_rates(law: ForceLaw) -> None:
+    rng = np.random.default_rng(4)
+    motion = QuasiStatic(PlanarChain([0.14] * 5), law)
+    shape, rates = rng.normal(size=4), rng.normal(size=(6, 4))
+    each = [motion.joint_torques(shape, rate, MU) for rate in rates]
+    np.testing.assert_allclose(motion.joint_torques(shape, rates, MU), each, atol=1e-7)

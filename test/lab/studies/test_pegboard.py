@@ -34,6 +34,7 @@ def made_up(task: Task) -> dict[str, Any]:
         'angle_deg': angle,
         'total_deg': 2.0 * angle,
         'limits_broken': 0,
+        'deepest_contact': 0.004,
         'energy': {'largest_excess': 1e-12},
         'largest_offsets': [0.1, 0.2],
         'time': np.arange(frames, dtype=float).tolist(),

@@ -85,10 +85,12 @@ def _client(address: str) -> Any:
     """Connect to a scheduler that has at least one worker."""
     from distributed import Client
 
+    expected = 'the address of a running scheduler, such as tcp://127.0.0.1:8786'
+    if not address.rpartition(':')[2].isdecimal():
+        raise BadInputError('dask', address, expected)  # Dask would look for it for long
     try:
         client = Client(address, timeout=CONNECT_TIMEOUT, set_as_default=False)
     except (OSError, ValueError) as error:
-        expected = 'the address of a running scheduler, such as tcp://127.0.0.1:8786'
         raise BadInputError('dask', address, expected) from error
     try:
         client.wait_for_workers(1, timeout=WORKER_TIMEOUT)

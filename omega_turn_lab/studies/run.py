@@ -77,12 +77,16 @@ def run_reproduce(options: ReproduceOptions) -> int:
     studies = [load_study(name) for name in names]
     executor = _checked(options)
     outcome = compute_outcome(studies, options, executor)
+    for name in names:  # none of another run may stand beside these numbers
+        (options.out / f'{name}.png').unlink(missing_ok=True)
     for study, rows in zip(studies, _told(names, outcome, options)):
         seconds = time.perf_counter() - began
         path = options.out / f'{study.name}.json'
         trials = study.records(outcome)
         write_json(path, study.name, rows, options.seed, seconds, trials)
         print_table(study.title, rows)
+        if not (options.out / f'{study.name}.png').exists():
+            print(f'{study.name}: no figure without PyBullet')
     print(f'{time.perf_counter() - began:.1f} s, files in {options.out}')
     return 0
 

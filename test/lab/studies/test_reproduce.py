@@ -80,7 +80,6 @@ def test_studies_share_the_cases_they_have_in_common(
     [
         (['flat', '--jobs', '0'], 'jobs'),
         (['flat', '--jobs', '-3'], 'jobs'),
-        (['flat', '--seed', '-1'], 'seed'),
         (['flat', '--out', '/dev/null/out'], 'out'),
     ],
 )

@@ -192,7 +192,7 @@ def test_a_new_period_holds_from_then_on(graph: Graph) -> None:
 
 
 def test_a_change_under_way_does_not_halt_the_turn(graph: Graph) -> None:
-    turner = Turner(graph, **BRISK)
+    turner = Turner(graph, **BRISK, state_timeout=60.0)  # however late a busy machine is
     said = 0
 
     def seldom(message: JointState) -> JointState | None:

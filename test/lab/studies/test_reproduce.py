@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -121,32 +122,8 @@ def test_the_command_line_loads_nothing_heavy_until_asked() -> None:
     assert done.stdout.strip() == '[]'
 
 
-def test_sigterm_ends_it_quietly_like_ctrl_c(tmp_path: Path) -> None:
-    command = [sys.executable, '-m', 'omega_turn_lab.cli', 'reproduce', 'joints', '--jobs', '2']
-    process = subprocess.Popen(
-        [*command, '--no-pybullet', '--out', str(tmp_path)],
-        cwd=ROOT,
-        env={**os.environ, 'PYTHONPATH': str(ROOT)},
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-    try:
-        assert process.stderr is not None
-        while 'designing' not in process.stderr.read(9):
-            assert process.poll() is None
-        time.sleep(3.0)  # for the workers to be under way
-        process.terminate()
-        _, errors = process.communicate(timeout=30)
-    finally:
-        process.kill()
-    assert process.returncode == 130
-    assert errors.splitlines()[-1] == 'interrupted'
-    assert not any(word in errors for word in ('Traceback', 'Warning', 'leaked'))
-
-
-@pytest.mark.slow
-def test_an_interrupt_keeps_what_is_finished_and_exits_130(tmp_path: Path) -> None:
-    cache = tmp_path / '.cache'
+def interrupted_study(tmp_path: Path, send: Callable[[subprocess.Popen[str]], None]) -> str:
+    """Interrupt a study once its first case is finished; return what it said on stderr."""
     process = subprocess.Popen(
         [
             *(sys.executable, '-m', 'omega_turn_lab.cli', 'reproduce', 'joints'),
@@ -162,17 +139,32 @@ def test_an_interrupt_keeps_what_is_finished_and_exits_130(tmp_path: Path) -> No
     )
     try:
         deadline = time.monotonic() + 200.0
-        while not list(cache.glob('*.json')):
+        while not list((tmp_path / '.cache').glob('*.json')):
             assert process.poll() is None and time.monotonic() < deadline
-            time.sleep(0.1)
-        os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to every process of the job
+            time.sleep(0.02)
+        send(process)
         _, errors = process.communicate(timeout=30)
     finally:
         if process.poll() is None:
             os.killpg(process.pid, signal.SIGKILL)
             process.wait()
     assert process.returncode == 130
+    return errors
+
+
+def test_sigterm_ends_it_quietly_like_ctrl_c(tmp_path: Path) -> None:
+    errors = interrupted_study(tmp_path, subprocess.Popen.terminate)
+    assert errors.splitlines()[-1] == 'interrupted'
+    assert not any(word in errors for word in ('Traceback', 'Warning', 'leaked'))
+
+
+@pytest.mark.slow
+def test_an_interrupt_keeps_what_is_finished_and_exits_130(tmp_path: Path) -> None:
+    def to_every_process_of_the_job(process: subprocess.Popen[str]) -> None:  # as a terminal does
+        os.killpg(process.pid, signal.SIGINT)
+
+    errors = interrupted_study(tmp_path, to_every_process_of_the_job)
     assert 'interrupted' in errors and 'Traceback' not in errors
-    finished = list(cache.iterdir())
+    finished = list((tmp_path / '.cache').iterdir())
     assert finished and all(path.suffix == '.json' for path in finished)
     assert not list(tmp_path.glob('*.json')), 'a study that was not finished'

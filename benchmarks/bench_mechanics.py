@@ -129,7 +129,7 @@ def show_growth() -> None:
     """Cost over joints, contact points and grid."""
     print('along a gait [us]:')
     for n in (4, 8, 16, 32):
-        motion = QuasiStatic(PlanarChain(np.full(n + 1, 0.1)))
+        motion = QuasiStatic(PlanarChain(np.full(n + 1, 0.1), points_per_link=4))
         q, dq = gait_motions(n, SHAPES)
         taken = 1e6 * best_of(lambda: motion.body_velocity(q, dq), 3) / SHAPES
         print(f'  N = {n:2d}, 4 points per link    {taken:6.2f}')
@@ -157,7 +157,7 @@ def measure_design() -> None:
 
 
 if __name__ == '__main__':
-    paper = PlanarChain.of_robot(load_robot('limbless16'))
+    paper = PlanarChain.of_robot(load_robot('limbless16'), points_per_link=4)
     compare_solvers(paper)
     compare_cores(paper)
     show_growth()

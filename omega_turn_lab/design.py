@@ -75,8 +75,9 @@ def _account(
     search = f'{design.evaluations} cycles integrated'
     if isinstance(design, Design):
         search = (
-            f'{design.method}: {design.agreeing} of {design.starts} starts within 5 % of the '
-            f'best, {search}, stopped by {design.reason}'
+            f'{design.method}: {design.starts} starts, whose tops are '
+            f'{" ".join(f"{top:.2f}" for top in design.tops)} of the best; {search}, stopped by '
+            f'{design.reason}'
         )
     return (
         f'{entry.name}: {math.degrees(design.angle):.1f} deg per cycle, largest joint angle '

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from omega_turn_lab.studies.rows import Row, row_of
 from omega_turn_lab.studies.study import Outcome, Plan, Study, k_grid
-from omega_turn_lab.studies.sweeps import angle_rows, angle_series, case_name, draw_angles
+from omega_turn_lab.studies.sweeps import Sweep, case_name
 from omega_turn_lab.studies.tasks import DesignTask
 
 NAME = 'amplitude'
@@ -17,13 +15,12 @@ def _family(plan: Plan, limit_deg: float) -> list[DesignTask]:
     return [plan.design(k_t, theta_max_deg=limit_deg) for k_t in k_grid(1.5)]
 
 
-def _designs(plan: Plan) -> list[DesignTask]:
-    return [task for limit in LIMITS_DEG for task in _family(plan, limit)]
+SWEEP = Sweep(NAME, LIMITS_DEG, _family, 'limit {theta_max_deg:g}°', 'limit {:g}°')
 
 
 def _rows(outcome: Outcome) -> list[Row]:
-    tasks = _designs(outcome.plan)
-    rows = angle_rows(NAME, outcome, tasks, 'limit {theta_max_deg:g}°')
+    """Angles, then how far the limit modulates each: the paper's 'tunable range'."""
+    rows = SWEEP.rows(outcome)
     smallest, largest = (_family(outcome.plan, limit) for limit in (LIMITS_DEG[0], LIMITS_DEG[-1]))
     for low, high in zip(smallest, largest):
         (theory_low, played_low), (theory_high, played_high) = map(outcome.angles, (low, high))
@@ -36,12 +33,6 @@ def _rows(outcome: Outcome) -> list[Row]:
     return rows
 
 
-def _draw(outcome: Outcome, out: Path) -> None:
-    series = [
-        angle_series(NAME, outcome, _family(outcome.plan, limit), f'limit {limit:g}°')
-        for limit in LIMITS_DEG
-    ]
-    draw_angles(out / f'{NAME}.png', series)
-
-
-STUDY = Study(NAME, 'Amplitude modulation: angle by joint angle limit', _designs, _rows, _draw)
+STUDY = Study(
+    NAME, 'Amplitude modulation: angle by joint angle limit', SWEEP.designs, _rows, SWEEP.draw
+)

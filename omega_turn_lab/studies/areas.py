@@ -7,14 +7,11 @@ on when it comes back to a shape, that matters.
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.spatial import ConvexHull
 
 from omega_turn_ros.mechanics.chain import PlanarChain
-from omega_turn_ros.mechanics.swept_area import body_corners
-
-Array = NDArray[np.float64]
+from omega_turn_ros.mechanics.swept_area import body_corners, swept_area_by_start
 
 READINGS = {
     'swept_area': 'hull of the body axis',
@@ -42,37 +39,15 @@ def area_readings(
     """
     from shapely import polygons, union_all
 
-    axis = chain.outline(path, poses)
-    corners = body_corners(chain, width, path, poses)
-    covered = union_all(polygons(corners.reshape(-1, 4, 2)))
-    by_start = _hulls_by_start(axis, np.asarray(poses, float))
+    squared = float(chain.lengths.sum()) ** 2
+    joints = chain.outline(path, poses)[:, 1:-1].reshape(-1, 2)
+    covered = union_all(polygons(body_corners(chain, width, path, poses).reshape(-1, 4, 2)))
+    by_start = swept_area_by_start(chain, path, poses, STARTS)
     areas = {
-        'swept_area': by_start[0],
-        'swept_area_least': min(by_start),
-        'swept_area_most': max(by_start),
-        'swept_area_markers': _hull(axis[:, 1:-1]),
-        'swept_area_union': float(covered.area),
+        'swept_area': float(by_start[0]),
+        'swept_area_least': float(by_start.min()),
+        'swept_area_most': float(by_start.max()),
+        'swept_area_markers': float(ConvexHull(joints).volume) / squared,
+        'swept_area_union': float(covered.area) / squared,
     }
-    return {name: areas[name] / float(chain.lengths.sum()) ** 2 for name in READINGS}
-
-
-def _hulls_by_start(axis: Array, poses: Array) -> list[float]:
-    """Hull of one cycle [m^2] for starts spread along it, the given start first.
-
-    Args:
-        axis: points on the body [m], shape (T, P, 2).
-        poses: shape (T, 3).
-    """
-    # The next cycle is this one moved on by the displacement of a cycle.
-    turn = poses[-1, 2] - poses[0, 2]
-    c, s = np.cos(turn), np.sin(turn)
-    moved = (axis - poses[0, :2]) @ np.array([[c, s], [-s, c]]) + poses[-1, :2]
-    two = np.concatenate([axis, moved[1:]])
-    steps = len(axis) - 1
-    starts = np.arange(STARTS) * steps // STARTS
-    return [_hull(two[start : start + steps + 1]) for start in starts]
-
-
-def _hull(points: Array) -> float:
-    """Area of the convex hull [m^2] of points, shape (..., 2)."""
-    return float(ConvexHull(points.reshape(-1, 2)).volume)
+    return {name: areas[name] for name in READINGS}

@@ -92,7 +92,16 @@ def write_json(
     seconds: float,
     trials: Sequence[dict[str, Any]] = (),
 ) -> None:
-    """Write a study's numbers, and every trial behind them where it has trials."""
+    """Write a study's numbers, and every trial behind them where it has trials.
+
+    Args:
+        path: of the file.
+        study: its name.
+        rows: the numbers.
+        seed: of the searches and trials.
+        seconds: by the clock, for the cases of the run and for this study's table and figures.
+        trials: plain JSON.
+    """
     record: dict[str, Any] = {
         'study': study,
         'rows': [row.to_mapping() for row in rows],

@@ -79,11 +79,11 @@ def run_reproduce(options: ReproduceOptions) -> int:
     outcome = compute_outcome(studies, options, executor)
     for name in names:  # none of another run may stand beside these numbers
         (options.out / f'{name}.png').unlink(missing_ok=True)
-    for study, rows in zip(studies, _told(names, outcome, options)):
-        seconds = time.perf_counter() - began
+    computed = time.perf_counter() - began
+    for study, (rows, telling) in zip(studies, _told(names, outcome, options)):
         path = options.out / f'{study.name}.json'
         trials = study.records(outcome)
-        write_json(path, study.name, rows, options.seed, seconds, trials)
+        write_json(path, study.name, rows, options.seed, computed + telling, trials)
         print_table(study.title, rows)
         if not (options.out / f'{study.name}.png').exists():
             print(f'{study.name}: no figure without PyBullet')
@@ -93,8 +93,11 @@ def run_reproduce(options: ReproduceOptions) -> int:
 
 def _told(
     names: Sequence[str], outcome: Outcome, options: ReproduceOptions
-) -> Iterator[list[Row]]:
-    """Rows of each study, in order, its figures drawn: where there are several, on all cores."""
+) -> Iterator[tuple[list[Row], float]]:
+    """Rows of each study, in order, its figures drawn, and the time that took [s].
+
+    Where there are several, on all cores.
+    """
     from joblib import Parallel, delayed
 
     jobs = options.jobs if len(names) > 1 else 1
@@ -102,11 +105,12 @@ def _told(
     yield from pool(delayed(_tell)(name, outcome, options.out) for name in names)
 
 
-def _tell(name: str, outcome: Outcome, out: Path) -> list[Row]:
+def _tell(name: str, outcome: Outcome, out: Path) -> tuple[list[Row], float]:
+    began = time.perf_counter()
     study = load_study(name)
     rows = study.rows(outcome)
     study.draw(outcome, out)
-    return rows
+    return rows, time.perf_counter() - began
 
 
 def compute_outcome(

@@ -29,8 +29,7 @@ TURNS = (
     ('offset', 0.0, 90.0),
     ('geometric', 1.5, 90.0),
 )
-POINTS = 4  # contact points along each link
-ROWS = 3  # and across, where the width counts
+ROWS = 3  # of contact points across a link, where the width counts
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +59,6 @@ class Change:
         loads[[0, -1]] *= self.end_load
         chain = PlanarChain(
             lengths,
-            points_per_link=POINTS,
             loads=loads,
             width=self.width * task.robot.module_width,
             points_across=ROWS if self.width else 1,

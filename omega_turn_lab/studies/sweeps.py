@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from omega_turn_lab.studies.figures import Series, add_legend, draw_series, new_figure
 from omega_turn_lab.studies.published import paper_figure
 from omega_turn_lab.studies.rows import Row, params_of, row_of
-from omega_turn_lab.studies.study import Outcome
+from omega_turn_lab.studies.study import Outcome, Plan, Study
 from omega_turn_lab.studies.tasks import DesignTask
 
 NICKNAMES = {0.0: 'offset', 1.0: 'omega'}
@@ -90,3 +91,47 @@ def draw_angles(path: Path, series: Sequence[Series]) -> None:
         draw_series(axes, series)
         axes.set_ylabel('angle per cycle [deg]')
         add_legend(figure, axes, series[0].pybullet is not None)
+
+
+@dataclass(frozen=True, slots=True)
+class Sweep:
+    """A study of the angle over k_t, one family of gaits per value of something else.
+
+    Attributes:
+        name: of the study.
+        values: of what is varied.
+        family: gaits over k_t for one of them.
+        part: names a value in the table, formatted with N, k_f and theta_max_deg.
+        label: names a value in the figure, formatted with it.
+    """
+
+    name: str
+    values: Sequence[float]
+    family: Callable[[Plan, float], list[DesignTask]]
+    part: str
+    label: str
+
+    def designs(self, plan: Plan) -> list[DesignTask]:
+        """Gaits of all families."""
+        return [task for value in self.values for task in self.family(plan, value)]
+
+    def rows(self, outcome: Outcome) -> list[Row]:
+        """Angle of every gait, then the best k_t of every family."""
+        families = [self.family(outcome.plan, value) for value in self.values]
+        rows = angle_rows(self.name, outcome, self.designs(outcome.plan), self.part)
+        for tasks in families:
+            case = f'{self.part.format_map(params_of(tasks[0]))}, best k_t'
+            rows.append(best_row(self.name, outcome, tasks, case))
+        return rows
+
+    def draw(self, outcome: Outcome, out: Path) -> None:
+        """Draw one curve per family."""
+        series = [
+            angle_series(self.name, outcome, self.family(outcome.plan, v), self.label.format(v))
+            for v in self.values
+        ]
+        draw_angles(out / f'{self.name}.png', series)
+
+    def study(self, title: str) -> Study:
+        """Make the study of it."""
+        return Study(self.name, title, self.designs, self.rows, self.draw)

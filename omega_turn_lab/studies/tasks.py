@@ -113,7 +113,8 @@ class DesignTask:
             'areas': areas,
             'clearance': design.clearance,
             'evaluations': design.evaluations,
-            'agreeing_starts': [design.agreeing, design.starts],
+            'starts': design.starts,
+            'tops': [round(top, 4) for top in design.tops],
             'reason': design.reason,
         }
 

@@ -22,7 +22,6 @@ Array = NDArray[np.float64]
 SCALES = 41
 PHASES = 24  # table columns per cycle
 STEPS_PER_PHASE = 15  # integration steps between two columns
-POINTS_PER_LINK = 8
 NO_SCALE = 1e-9  # scale 0 with a side: the table's first row is where small turns begin
 
 
@@ -36,7 +35,7 @@ def calibrate(gait: WaveGait, robot: Robot) -> Calibration:
     Raises:
         BadInputError: the gait turns clockwise or not at all.
     """
-    motion = QuasiStatic(PlanarChain.of_robot(robot, POINTS_PER_LINK))
+    motion = QuasiStatic(PlanarChain.of_robot(robot))
     start = straightest_phase(gait, robot.n_yaw)
     steps = PHASES * STEPS_PER_PHASE
     path = gait.angles(start + 2.0 * np.pi * np.arange(steps + 1) / steps, robot.n_yaw)
@@ -107,7 +106,7 @@ def make_library_gait(name: str, description: str, gait: WaveGait, robot: Robot)
     if theta_max > robot.position_limit + 1e-6:
         expected = f'at most {robot.position_limit} [rad], the limit of {robot.name}'
         raise BadInputError('largest joint angle', theta_max, expected)
-    motion = QuasiStatic(PlanarChain.of_robot(robot, POINTS_PER_LINK))
+    motion = QuasiStatic(PlanarChain.of_robot(robot))
     cycle = gait.angles(np.linspace(0.0, 2.0 * np.pi, 721), robot.n_yaw)
     if motion.turn(cycle) < 0.0:
         gait = gait.mirrored()

@@ -28,19 +28,19 @@ from omega_turn_ros.gaits.fourier_gait import FourierGait
 
 Array = NDArray[np.float64]
 
-SCREENED = 60  # random candidates per start
+SCREENED = 40  # random candidates per start
 FINE_STRIDE = 5
 
 
 def design_fourier(
-    problem: DesignProblem, seed: int = 0, starts: int = 20, harmonics: int = 2
+    problem: DesignProblem, seed: int = 0, starts: int = 32, harmonics: int = 2
 ) -> Design:
     """Find the Fourier gait that turns most per second at equal peak joint speed.
 
     Args:
         problem: the body, its ground and its limits.
         seed: equal seeds give equal gaits.
-        starts: how many local searches.
+        starts: how many searches to begin with.
         harmonics: of each of f_1, f_2 and f_3.
 
     Raises:

@@ -13,6 +13,7 @@ import numpy as np
 
 from omega_turn_ros.design.plane_search import propose
 from omega_turn_ros.design.problem import Design, DesignProblem
+from omega_turn_ros.design.search import shares_of_best
 from omega_turn_ros.design.sub_shape import PLANES, SubShape
 from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.gaits.two_wave_gait import TwoWaveGait
@@ -24,7 +25,6 @@ ROUNDS = 30  # at most, each through all three planes
 FAR, FAR_GAIN = 1.0, 0.005
 NEAR, NEAR_GAIN = 0.3, 0.0005  # for the best start, once more
 CLOSER, LAST_SPREAD = 0.5, 0.01
-SAME = 0.05  # relative difference of two angles that count as one
 
 
 def design_hierarchical(problem: DesignProblem, seed: int = 0, starts: int = 8) -> Design:
@@ -45,7 +45,7 @@ def design_hierarchical(problem: DesignProblem, seed: int = 0, starts: int = 8) 
         raise BadInputError('starts', starts, 'at least 1')
     climbs = [_Climb(problem, np.random.default_rng((seed, k))) for k in range(starts)]
     best = max(climbs, key=lambda climb: climb.angle)
-    agreeing = sum(climb.angle >= (1.0 - SAME) * best.angle for climb in climbs)
+    tops = shares_of_best([climb.angle for climb in climbs])
     best.climb(NEAR, NEAR_GAIN)
     if not best.angle > 0.0:
         raise BadInputError('problem', problem, 'a body that can turn within its limits')
@@ -58,7 +58,7 @@ def design_hierarchical(problem: DesignProblem, seed: int = 0, starts: int = 8) 
         method='hierarchical',
         evaluations=sum(climb.evaluations for climb in climbs),
         starts=starts,
-        agreeing=agreeing,
+        tops=tops,
         reason=best.reason,
     )
 

@@ -120,6 +120,6 @@ def finish(
         method,
         found.evaluations,
         starts,
-        found.agreeing,
+        found.tops,
         found.reason,
     )

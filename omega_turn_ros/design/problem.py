@@ -44,7 +44,7 @@ class DesignProblem:
     k_f: float = 1.5
     k_t: float = 1.0
     law: ForceLaw = field(default_factory=CoulombFriction)
-    samples: int = 60
+    samples: int = 48
 
     def __post_init__(self) -> None:
         """Refuse bodies and limits that cannot turn."""
@@ -71,7 +71,6 @@ class DesignProblem:
         k_f: float = 1.5,
         k_t: float = 1.0,
         law: ForceLaw | None = None,
-        points_per_link: int = 4,
     ) -> DesignProblem:
         """Problem of a robot's planar chain.
 
@@ -81,7 +80,7 @@ class DesignProblem:
         if theta_max > robot.position_limit + 1e-9:
             expected = f"at most the robot's own {robot.position_limit:.4f} [rad]"
             raise BadInputError('theta_max', theta_max, expected)
-        chain = PlanarChain.of_robot(robot, points_per_link)
+        chain = PlanarChain.of_robot(robot)
         ground = law or CoulombFriction()
         return cls(chain, robot.module_width, theta_max, k_f, k_t, ground)
 
@@ -144,7 +143,8 @@ class Design:
         method: 'direct', 'fourier' or 'hierarchical'.
         evaluations: cycles integrated on the way, all starts.
         starts: how many starting points.
-        agreeing: how many of them came within 5 % of the best by themselves.
+        tops: where the searches from them ended, over the best of them, best first; of the
+            direct methods only those of the last round.
         reason: why the best start stopped.
     """
 
@@ -154,5 +154,5 @@ class Design:
     method: str
     evaluations: int
     starts: int
-    agreeing: int
+    tops: tuple[float, ...]
     reason: str

@@ -1,8 +1,8 @@
-"""Many short climbs, then CMA-ES from the best few of the tops they found.
+"""Many short runs of CMA-ES, of which fewer and fewer go on (successive halving).
 
-The turn per cycle has several basins of much the same size, so breadth comes first: quasi-Newton
-climbs, from starts that differ, reach the basin of each start in about a hundred costs. They
-stall where a limit becomes active, which CMA-ES does not mind.
+The turn per cycle has several basins of much the same size, and kinks where a limit becomes
+active, over which gradients stumble. So breadth comes first: CMA-ES from starts that differ, until
+it is seen which basins are worth more costs.
 """
 
 from __future__ import annotations
@@ -14,20 +14,16 @@ from typing import Any
 import cma
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize
 
 Array = NDArray[np.float64]
 Cost = Callable[[Array], Array]  # of parameter vectors, shape (P, D): shape (P,)
 Likeness = Callable[[Array], Array]  # of parameter vectors (P, D): unit vectors, shape (P, F)
 
-DIFFERENCE = 1e-3  # of parameters, for gradients
-CLIMB, LINE_SEARCH = 10, 5  # gradients of a climb, and of each of its line searches, at most
 ALIKE_STARTS, ALIKE_TOPS = 0.7, 0.95  # cosine from which two gaits count as one
-FOLLOWED = 3  # tops that differ, from which CMA-ES goes on
-STEP = 0.1  # of CMA-ES at first, in every direction
+ROUNDS = ((10, 16), (15, 8), (40, 3), (40, 1))  # costs per parameter of each run; how many go on
+STEP = 0.15  # of a run at first, in every direction
 TOLERANCE, FINE_TOLERANCE = 1e-3, 3e-5  # spread of costs in a generation that has converged
-EVALUATIONS, FINE_EVALUATIONS = 45, 100  # at most, per parameter
-SAME = 0.05  # a climb this close to the best, relative, counts as agreeing
+FINE_EVALUATIONS = 150  # at most, per parameter
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,14 +34,14 @@ class SearchResult:
         best: parameters, shape (D,).
         cost: of them.
         evaluations: of either cost, all starts.
-        agreeing: starts whose short climb came within 5 % of the best.
+        tops: what the runs of the last round reached, over the best of them, best first.
         reason: why the last search stopped.
     """
 
     best: Array
     cost: float
     evaluations: int
-    agreeing: int
+    tops: tuple[float, ...]
     reason: str
 
 
@@ -59,48 +55,38 @@ def search(
         fine: the cost that counts.
         likeness: parameter vectors are as alike as these unit vectors are parallel, either way.
         candidates: parameter vectors to choose the starts from, shape (C, D), C >= starts.
-        starts: how many to climb from.
+        starts: how many runs to begin with.
         seed: of CMA-ES; equal seeds give equal results.
     """
     order = np.argsort(coarse(candidates), kind='stable')
     chosen = _different(likeness(candidates[order]), starts, ALIKE_STARTS)
-    climbs = [_climb(coarse, candidates[order[i]]) for i in chosen]
-    climbs.sort(key=lambda climb: climb[1])
-    tops = np.array([end for end, _, _ in climbs])
-    runs: list[cma.CMAEvolutionStrategy] = []
-    for i in _different(likeness(tops), FOLLOWED, ALIKE_TOPS):
-        runs.append(_strategy(tops[i], STEP, TOLERANCE, EVALUATIONS, seed * 1000 + len(runs)))
-        _advance(runs[-1], coarse)
-    winner = min((run.result for run in runs), key=lambda result: float(result.fbest))
-    agreeing = sum(cost <= winner.fbest + SAME * abs(winner.fbest) for _, cost, _ in climbs)
+    runs = [
+        _strategy(candidates[order[i]], STEP, TOLERANCE, seed * 1000 + k)
+        for k, i in enumerate(chosen)
+    ]
+    evaluations = len(candidates)
+    for costs, kept in ROUNDS:
+        evaluations += sum(_advance(run, coarse, costs * candidates.shape[1]) for run in runs)
+        runs.sort(key=lambda run: float(run.result.fbest))
+        tops = np.array([run.result.xbest for run in runs])
+        last = [-float(run.result.fbest) for run in runs]
+        runs = [runs[i] for i in _different(likeness(tops), kept, ALIKE_TOPS)]
+    winner = runs[0].result
     # The winner's spread tells how far the finer search has to look in each direction.
     spread = np.maximum(3.0 * winner.stds, 3e-3)
-    last = _strategy(
-        winner.xbest, 1.0, FINE_TOLERANCE, FINE_EVALUATIONS, seed * 1000 + 999, spread
+    finest = _strategy(winner.xbest, 1.0, FINE_TOLERANCE, seed * 1000 + 999, spread)
+    evaluations += _advance(finest, fine, FINE_EVALUATIONS * candidates.shape[1])
+    found = finest.result
+    reason = ', '.join(finest.stop()) or f'{found.evaluations} costs'
+    return SearchResult(
+        np.array(found.xbest), float(found.fbest), evaluations, shares_of_best(last), reason
     )
-    _advance(last, fine)
-    evaluations = len(candidates) + sum(count for _, _, count in climbs)
-    evaluations += sum(run.result.evaluations for run in (*runs, last))
-    found = last.result
-    reason = ', '.join(last.stop())
-    return SearchResult(np.array(found.xbest), float(found.fbest), evaluations, agreeing, reason)
 
 
-def _climb(cost: Cost, start: Array) -> tuple[Array, float, int]:
-    """Short quasi-Newton descent; returns the end, its cost and the number of costs."""
-    steps = DIFFERENCE * np.eye(start.size)
-    count = 0
-
-    def value_and_gradient(x: Array) -> tuple[float, Array]:
-        nonlocal count
-        values = cost(np.vstack([x, x + steps]))
-        count += values.size
-        return float(values[0]), (values[1:] - values[0]) / DIFFERENCE
-
-    # Without the bounds on line searches, those over a kink take most of the costs.
-    options = {'maxfun': CLIMB, 'maxls': LINE_SEARCH}
-    end = minimize(value_and_gradient, start, jac=True, method='L-BFGS-B', options=options)
-    return end.x, float(end.fun), count
+def shares_of_best(values: list[float]) -> tuple[float, ...]:
+    """Values over the largest of them, largest first; 0 where none is > 0."""
+    ordered = sorted(values, reverse=True)
+    return tuple(v / ordered[0] if ordered[0] > 0.0 else 0.0 for v in ordered)
 
 
 def _different(directions: Array, count: int, alike: float) -> list[int]:
@@ -115,12 +101,7 @@ def _different(directions: Array, count: int, alike: float) -> list[int]:
 
 
 def _strategy(
-    start: Array,
-    step: float,
-    tolerance: float,
-    evaluations: int,
-    seed: int,
-    spread: Array | None = None,
+    start: Array, step: float, tolerance: float, seed: int, spread: Array | None = None
 ) -> cma.CMAEvolutionStrategy:
     options: dict[str, Any] = {
         'seed': seed + 1,
@@ -128,13 +109,15 @@ def _strategy(
         'tolfun': tolerance,
         'tolflatfitness': 10,
     }
-    options['maxfevals'] = evaluations * len(start)
     if spread is not None:
         options['CMA_stds'] = spread
     return cma.CMAEvolutionStrategy(start, step, options)
 
 
-def _advance(run: cma.CMAEvolutionStrategy, cost: Cost) -> None:
-    while not run.stop():
+def _advance(run: cma.CMAEvolutionStrategy, cost: Cost, costs: int) -> int:
+    """Go on until the run has converged or has had so many more costs; return how many."""
+    before = int(run.countevals)
+    while not run.stop() and run.countevals - before < costs:
         batch = run.ask()
         run.tell(batch, cost(np.array(batch)).tolist())
+    return int(run.countevals) - before

@@ -18,6 +18,9 @@ from omega_turn_ros.robot import Robot
 
 Array = NDArray[np.float64]
 
+# Of a robot's link: twice as many move no angle of the shipped gaits by more than 0.2 degrees.
+POINTS_PER_LINK = 8
+
 
 @dataclass(frozen=True, slots=True)
 class ShapeState:
@@ -60,7 +63,7 @@ class PlanarChain:
         self,
         link_lengths: ArrayLike,
         weight: float = 1.0,
-        points_per_link: int = 4,
+        points_per_link: int = POINTS_PER_LINK,
         *,
         loads: ArrayLike | None = None,
         width: float = 0.0,
@@ -96,7 +99,7 @@ class PlanarChain:
         self.normal_forces = (weight * (shares / shares.sum())[:, None] * point_share).ravel()
 
     @classmethod
-    def of_robot(cls, robot: Robot, points_per_link: int = 4) -> PlanarChain:
+    def of_robot(cls, robot: Robot, points_per_link: int = POINTS_PER_LINK) -> PlanarChain:
         """Chain of the robot's planar links, pitch joints straight, with the robot's weight."""
         return cls(robot.planar_link_lengths, robot.weight, points_per_link)
 

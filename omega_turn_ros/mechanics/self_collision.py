@@ -17,6 +17,9 @@ Array = NDArray[np.float64]
 def self_clearance(chain: PlanarChain, width: float, angles: ArrayLike) -> Array:
     """Smallest gap between links that do not share a joint, seen as rectangles.
 
+    Links that share a joint overlap as rectangles in any bend: how far a joint may go before its
+    own two links touch is what the robot's position limit says.
+
     The gap of a pair is the widest along the axes of either rectangle (separating axis theorem):
     positive, a lower bound of the distance; negative, the depth of the overlap.
 

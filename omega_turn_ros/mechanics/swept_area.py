@@ -39,6 +39,38 @@ def swept_area(chain: PlanarChain, width: float, path: ArrayLike, poses: ArrayLi
         path: yaw joint angles [rad], shape (T, N).
         poses: of the mean body frame, shape (T, 3).
     """
-    corners = body_corners(chain, width, path, poses).reshape(-1, 2)
-    length = chain.lengths.sum()
-    return float(ConvexHull(corners).volume / length**2)
+    return _hull(body_corners(chain, width, path, poses)) / float(chain.lengths.sum()) ** 2
+
+
+def swept_area_by_start(
+    chain: PlanarChain, path: ArrayLike, poses: ArrayLike, starts: int
+) -> Array:
+    """Area that one cycle of the body axis sweeps, by where the cycle starts.
+
+    The body has turned when it comes back to a shape, so it matters (own derivation: the next
+    cycle is this one moved on by the displacement of a cycle).
+
+    Args:
+        chain: the robot.
+        path: yaw joint angles of one cycle, both ends [rad], shape (T, N).
+        poses: of the mean body frame, x [m], y [m], heading [rad], shape (T, 3).
+        starts: how many, spread along the cycle, the given one first.
+
+    Returns:
+        Areas in body lengths squared, shape (starts,).
+    """
+    axis, pose = chain.outline(path, poses), np.asarray(poses, float)
+    turn = pose[-1, 2] - pose[0, 2]
+    c, s = np.cos(turn), np.sin(turn)
+    moved = (axis - pose[0, :2]) @ np.array([[c, s], [-s, c]]) + pose[-1, :2]
+    two = np.concatenate([axis, moved[1:]])
+    steps = len(axis) - 1
+    begins = np.arange(starts) * steps // starts
+    hulls = np.array([_hull(two[begin : begin + steps + 1]) for begin in begins])
+    areas: Array = hulls / float(chain.lengths.sum()) ** 2
+    return areas
+
+
+def _hull(points: Array) -> float:
+    """Area of the convex hull [m^2] of points, shape (..., 2)."""
+    return float(ConvexHull(points.reshape(-1, 2)).volume)

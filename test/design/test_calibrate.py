@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import yaml
 
-from omega_turn_ros.design.calibrate import POINTS_PER_LINK, make_library_gait, straightest_phase
+from omega_turn_ros.design.calibrate import make_library_gait, straightest_phase
 from omega_turn_ros.design.problem import DesignProblem
 from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.gaits.library import LibraryGait, gait_to_mapping, load_gait
@@ -46,7 +46,7 @@ def small() -> Robot:
 
 @pytest.fixture(scope='module')
 def small_chain(small: Robot) -> PlanarChain:
-    return PlanarChain.of_robot(small, POINTS_PER_LINK)
+    return PlanarChain.of_robot(small)
 
 
 @pytest.fixture(scope='module')

@@ -16,7 +16,7 @@ from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.gaits.two_wave_gait import TwoWaveGait
 from omega_turn_ros.mechanics.chain import PlanarChain
 from omega_turn_ros.mechanics.self_collision import self_clearance
-from omega_turn_ros.mechanics.swept_area import swept_area
+from omega_turn_ros.mechanics.swept_area import swept_area_by_start
 
 CHAIN = PlanarChain([0.14] * 6, points_per_link=3)
 PROBLEM = DesignProblem(CHAIN, 0.05, math.radians(80.0))
@@ -69,7 +69,8 @@ def test_a_weight_on_area_gives_a_smaller_area_for_less_turn(design: Design) -> 
     areas = []
     for gait in (design.gait, thrifty.gait):
         path = PROBLEM.path(gait, 360)
-        areas.append(swept_area(CHAIN, 0.0, path, PROBLEM.motion.pose_along(path)))
+        poses = PROBLEM.motion.pose_along(path)
+        areas.append(swept_area_by_start(CHAIN, path, poses, 24).min())
     assert areas[1] < areas[0]
     assert thrifty.angle < design.angle
 

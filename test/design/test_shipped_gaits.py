@@ -7,7 +7,6 @@ import math
 import numpy as np
 import pytest
 
-from omega_turn_ros.design.calibrate import POINTS_PER_LINK
 from omega_turn_ros.design.catalogue import CATALOGUE, recipes_for
 from omega_turn_ros.gaits.library import gait_names, load_gait
 from omega_turn_ros.mechanics.chain import PlanarChain
@@ -17,7 +16,7 @@ from omega_turn_ros.mechanics.trajectory import heading_along
 from omega_turn_ros.robot import load_robot
 
 ROBOT = load_robot('limbless16')
-CHAIN = PlanarChain.of_robot(ROBOT, POINTS_PER_LINK)
+CHAIN = PlanarChain.of_robot(ROBOT)
 ONE_DEGREE = math.radians(1.0)
 TWO_WAVE = [recipe.name for recipe in CATALOGUE]
 

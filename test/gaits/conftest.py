@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from rig import Rig
 
-from omega_turn_ros.design.calibrate import POINTS_PER_LINK
 from omega_turn_ros.design.rest import heading_to_rest
 from omega_turn_ros.gaits.controller import GaitController
 from omega_turn_ros.gaits.controller_state import ControllerConfig
@@ -27,7 +26,7 @@ def robot() -> Robot:
 @pytest.fixture(scope='session')
 def chain(robot: Robot) -> PlanarChain:
     """As fine as the one the gaits are calibrated with."""
-    return PlanarChain.of_robot(robot, POINTS_PER_LINK)
+    return PlanarChain.of_robot(robot)
 
 
 TWO_WAVE = [name for name in gait_names() if isinstance(load_gait(name).gait, WaveGait)]

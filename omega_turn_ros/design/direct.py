@@ -31,7 +31,7 @@ Array = NDArray[np.float64]
 
 SCREENED = 40  # random candidates per start; the best become the starts
 AREA_STARTS, AREA_STRIDE = 4, 2  # of the cycle, the one that sweeps least counts; of its shapes
-FINE_STRIDE = 5  # the last search keeps limits on the fine grid, and integrates every so many
+FINE_STRIDE = 4  # the last search keeps limits on the fine grid, and integrates every so many
 
 
 def design_direct(

@@ -29,7 +29,7 @@ from omega_turn_ros.gaits.fourier_gait import FourierGait
 Array = NDArray[np.float64]
 
 SCREENED = 40  # random candidates per start
-FINE_STRIDE = 5
+FINE_STRIDE = 4
 
 
 def design_fourier(

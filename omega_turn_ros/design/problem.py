@@ -20,7 +20,7 @@ from omega_turn_ros.robot import Robot
 Array = NDArray[np.float64]
 
 SMALLEST_LIMIT = math.radians(1.0)
-FINE, FINEST = 720, 20_000  # samples of a cycle in the last search, and where a limit is final
+FINE, FINEST = 480, 20_000  # samples of a cycle in the last search, and where a limit is final
 REFINEMENT = 4  # shapes looked at between two samples where the body nearly meets itself
 
 

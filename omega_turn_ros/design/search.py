@@ -23,7 +23,7 @@ ALIKE_STARTS, ALIKE_TOPS = 0.7, 0.95  # cosine from which two gaits count as one
 ROUNDS = ((10, 16), (15, 8), (40, 3), (40, 1))  # costs per parameter of each run; how many go on
 STEP = 0.15  # of a run at first, in every direction
 TOLERANCE, FINE_TOLERANCE = 1e-3, 3e-5  # spread of costs in a generation that has converged
-FINE_EVALUATIONS = 150  # at most, per parameter
+FINE_EVALUATIONS = 250  # at most, per parameter
 
 
 @dataclass(frozen=True, slots=True)

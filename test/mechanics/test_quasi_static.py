@@ -176,7 +176,7 @@ def test_displacement_does_not_depend_on_the_width_of_a_line(chain: PlanarChain)
     """Points across a vanishing width carry what one point carried."""
     rng = np.random.default_rng(36)
     angles, rates = rng.uniform(-1.0, 1.0, (5, 8)), rng.normal(size=(5, 8))
-    thin = PlanarChain(chain.lengths, 1.0, 4, width=1e-9, points_across=3)
+    thin = PlanarChain(chain.lengths, width=1e-9, points_across=3)
     np.testing.assert_allclose(
         QuasiStatic(thin).body_velocity(angles, rates),
         QuasiStatic(chain).body_velocity(angles, rates),

@@ -35,7 +35,7 @@ def unsearched(problem: DesignProblem, seed: int = 0, area_weight: float = 0.0) 
     gait = problem.fitted(shifted)
     angle = problem.turn(problem.path(gait))
     gait = gait if angle > 0.0 else gait.mirrored()
-    return Design(gait, abs(angle), 0.0, 'none', 1, 1, 1, 'not searched')
+    return Design(gait, abs(angle), 0.0, 'none', 1, 1, (1.0,), 'not searched')
 
 
 def played_by_theory(task: DesignTask, gait: WaveGait) -> Result:

@@ -8,20 +8,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from omega_turn_lab.body_shapes import body_polygons
 from omega_turn_lab.obstacle_trial import ObstacleTrial
 from omega_turn_lab.studies.figures import COLOURS, MARKERS, new_figure
+from omega_turn_lab.studies.motion_picture import draw_motion
 from omega_turn_lab.studies.spread import Spread
 from omega_turn_lab.studies.tasks import Result
-from omega_turn_ros.mechanics.chain import PlanarChain
-from omega_turn_sim_bridge.peg_lattice import peg_positions
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 DODGE = 0.007  # [BL] between the marks of two modes
-SHAPES = 9  # drawn of a turn
-MARGIN = 0.12  # [m] around the robot's way
 EXTRA_COLOURS = (*COLOURS, '0.5', '#E69F00', '#56B4E9')
 EXTRA_MARKERS = (*MARKERS, 'x', 'v', 'P')
 
@@ -48,9 +44,8 @@ def draw_pegboard(
         figure.legend(loc='outside upper center', ncols=2)
         for i, (title, (trial, result)) in enumerate(motions.items()):
             place = figure.add_subplot(grid[1, i])
-            _draw_motion(place, trial, result)
-            turned = result['total_deg']
-            place.set_title(f'{title}: {turned:.0f}° in {trial.cycles} cycles', fontsize=7.0)
+            draw_motion(place, trial, result)
+            place.set_title(title, fontsize=7.0)
 
 
 def _draw_angles(
@@ -79,30 +74,3 @@ def _draw_angles(
     axes.set_xlabel('spacing of the pegs [BL]')
     axes.set_title('thin: ± std, thick: 95 % interval of the mean', loc='left', fontsize=7.0)
     axes.set_ylabel('angle per cycle [deg]')
-
-
-def _draw_motion(axes: Axes, trial: ObstacleTrial, result: Result) -> None:
-    """Body over time between the pegs: pale at first, dark at the end, head marked."""
-    from matplotlib.colors import to_rgb
-    from matplotlib.patches import Circle, Polygon
-
-    chain = PlanarChain.of_robot(trial.robot)
-    poses, angles = np.array(result['poses']), np.array(result['yaw_angles'])
-    chosen = np.linspace(0, len(poses) - 1, SHAPES).round().astype(int)
-    outlines = chain.outline(angles[chosen], poses[chosen])
-    for i, outline in enumerate(outlines):
-        depth = 0.15 + 0.85 * i / (SHAPES - 1)
-        # Mixed with white by hand: a body of see-through strips would show its overlaps.
-        body, head = ((1.0 - depth) + depth * np.array(to_rgb(c)) for c in COLOURS[:2])
-        for polygon in body_polygons(outline, trial.robot.module_width):
-            axes.add_patch(Polygon(polygon, facecolor=body, lw=0, zorder=1 + i))
-        axes.plot(*outline[0], 'o', color=head, ms=2.2, zorder=1 + i)
-    low, high = (f(outlines.reshape(-1, 2), axis=0) for f in (np.min, np.max))
-    for peg in peg_positions(trial.terrain, trial.robot, trial.seed):
-        axes.add_patch(
-            Circle(tuple(peg), trial.terrain.peg_radius, facecolor='0.25', lw=0, zorder=SHAPES + 1)
-        )
-    axes.set_xlim(low[0] - MARGIN, high[0] + MARGIN)
-    axes.set_ylim(low[1] - MARGIN, high[1] + MARGIN)
-    axes.set_aspect('equal')
-    axes.axis('off')

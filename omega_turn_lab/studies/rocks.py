@@ -10,6 +10,7 @@ the body to follow the ground.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,6 +19,7 @@ import numpy as np
 
 from omega_turn_lab.obstacle_trial import ObstacleTrial
 from omega_turn_lab.studies.figures import COLOURS, new_figure
+from omega_turn_lab.studies.motion_picture import draw_motion
 from omega_turn_lab.studies.published import paper_figure
 from omega_turn_lab.studies.rows import Row, params_of
 from omega_turn_lab.studies.spread import spread_of
@@ -33,6 +35,8 @@ if TYPE_CHECKING:
 
 NAME = 'rocks'
 PILES = 20
+OTHER_RELIEFS_BL = (0.005, 0.01, 0.06)  # the omega turn is tried with more and with less soil, too
+PICTURED = ('omega turn', 'compliant omega turn', 'offset turn')  # on the typical pile
 PLANAR = {
     'omega turn': 1.0,
     'compliant omega turn': 1.0,
@@ -73,10 +77,18 @@ def _pile(outcome: Outcome, gait: str) -> list[ObstacleTrial]:
     return [_on_rocks(outcome, gait, seed, terrain) for seed in range(PILES)]
 
 
+def _filled(outcome: Outcome, relief_bl: float) -> list[ObstacleTrial]:
+    """Piles filled with soil up to `relief_bl` body lengths below the top of the median rock."""
+    terrain = replace(load_terrain('rocks'), rock_relief_bl=relief_bl)
+    return [_on_rocks(outcome, 'omega turn', seed, terrain) for seed in range(PILES)]
+
+
 def _trials(outcome: Outcome) -> list[ObstacleTrial]:
     # Pile by pile, so that an interrupted run has a little of everything.
     by_gait = [_pile(outcome, gait) for gait in GAITS]
-    return [*(_hard(outcome, g) for g in GAITS), *(t for pile in zip(*by_gait) for t in pile)]
+    filled = [_filled(outcome, relief) for relief in OTHER_RELIEFS_BL]
+    piles = (t for pile in zip(*by_gait, *filled) for t in pile)
+    return [*(_hard(outcome, g) for g in GAITS), *piles]
 
 
 def _tried(outcome: Outcome, gait: str) -> tuple[float, list[Result]]:
@@ -99,6 +111,19 @@ def _rows(outcome: Outcome) -> list[Row]:
                 paper = paper_figure(NAME, f'angle_{ground.replace(" ", "_")}', params)
             ours = theory if (quantity, ground) == ('angle', HARD) else None
             rows.append(Row(f'{gait}, {ground}', params, quantity, unit, *paper, ours, value))
+    return [*rows, *_soil_rows(outcome)]
+
+
+def _soil_rows(outcome: Outcome) -> list[Row]:
+    """The omega turn's mean and deviation with other depths of soil between the rocks."""
+    rows: list[Row] = []
+    for relief in OTHER_RELIEFS_BL if outcome.tried else ():
+        found = [outcome.tried[trial]['angle_deg'] for trial in _filled(outcome, relief)]
+        spread = spread_of(found, outcome.plan.seed)
+        params = {**params_of(_task(outcome.plan, 'omega turn')), 'rock_relief_bl': relief}
+        case = f'omega turn, rocks, soil {relief:g} BL below their tops'
+        for quantity, value in (('angle', spread.mean), ('angle_std', spread.deviation)):
+            rows.append(Row(case, params, quantity, 'deg', None, None, None, value))
     return rows
 
 
@@ -139,11 +164,24 @@ def _records(outcome: Outcome) -> list[dict[str, Any]]:
     if not outcome.tried:
         return []
     return [
-        {'terrain': trial.terrain.kind, 'gait': gait, 'seed': trial.seed}
-        | _without_motion(outcome.tried[trial])
-        for gait in GAITS
-        for trial in [_hard(outcome, gait), *_pile(outcome, gait)]
+        _ground(trial) | {'gait': gait, 'seed': trial.seed} | _without_motion(outcome.tried[trial])
+        for gait, trials in _by_gait(outcome)
+        for trial in trials
     ]
+
+
+def _by_gait(outcome: Outcome) -> Iterator[tuple[str, list[ObstacleTrial]]]:
+    for gait in GAITS:
+        yield gait, [_hard(outcome, gait), *_pile(outcome, gait)]
+    for relief in OTHER_RELIEFS_BL:
+        yield 'omega turn', _filled(outcome, relief)
+
+
+def _ground(trial: ObstacleTrial) -> Result:
+    kind = trial.terrain.kind
+    return {'terrain': kind} | (
+        {'rock_relief_bl': trial.terrain.rock_relief_bl} if kind == ROCKS else {}
+    )
 
 
 def _without_motion(result: Result) -> Result:
@@ -151,11 +189,17 @@ def _without_motion(result: Result) -> Result:
 
 
 def _draw(outcome: Outcome, out: Path) -> None:
-    """Bars of the four gaits on both grounds, every pile as a dot."""
+    """Bars of the gaits on both grounds, every pile as a dot; below, bodies over time."""
     if not outcome.tried:
         return
-    with new_figure(out / f'{NAME}.png', 2.9) as figure:
-        axes = figure.add_subplot()
+    with new_figure(out / f'{NAME}.png', 5.0) as figure:
+        grid = figure.add_gridspec(2, len(PICTURED), height_ratios=(1.5, 1.0))
+        typical = _typical_seed(outcome)
+        for i, gait in enumerate(PICTURED):
+            place, trial = figure.add_subplot(grid[1, i]), _pile(outcome, gait)[typical]
+            draw_motion(place, trial, outcome.tried[trial])
+            place.set_title(gait, fontsize=7.0)
+        axes = figure.add_subplot(grid[0, :])
         for i, gait in enumerate(GAITS):
             _draw_gait(axes, outcome, gait, i)
         axes.axhline(0.0, color='k', linewidth=0.6)
@@ -164,6 +208,13 @@ def _draw(outcome: Outcome, out: Path) -> None:
         handles, labels = axes.get_legend_handles_labels()
         named = dict(zip(labels, handles))
         figure.legend(named.values(), named.keys(), loc='outside upper center', ncols=2)
+
+
+def _typical_seed(outcome: Outcome) -> int:
+    """Pile on which the omega turn comes nearest to its mean over all piles."""
+    _, results = _tried(outcome, 'omega turn')
+    found = np.array([result['angle_deg'] for result in results])
+    return int(np.abs(found - found.mean()).argmin())
 
 
 def _draw_gait(axes: Axes, outcome: Outcome, gait: str, place: float) -> None:

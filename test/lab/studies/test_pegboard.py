@@ -11,7 +11,7 @@ import pytest
 from PIL.PngImagePlugin import PngImageFile
 
 from omega_turn_lab.obstacle_trial import ObstacleTrial
-from omega_turn_lab.studies.pegboard import MODES, OPEN, PUSHING, SPACINGS_BL, STUDY, placements
+from omega_turn_lab.studies.pegboard import MODES, OPEN, SPACINGS_BL, STUDY
 from omega_turn_lab.studies.rows import Row, write_json
 from omega_turn_lab.studies.run import ROBOT
 from omega_turn_lab.studies.study import Outcome, Plan
@@ -63,21 +63,16 @@ def value(table: list[Row], case: str, quantity: str) -> float | None:
     return row.pybullet
 
 
-def test_open_loop_and_compliance_meet_the_same_twenty_placements_at_each_spacing(
-    tried: Outcome,
-) -> None:
-    assert len(placements(OPEN)) == len(placements(PUSHING)) == 20
+def test_every_mode_meets_the_same_twenty_placements_at_each_spacing(tried: Outcome) -> None:
     among_pegs = [t for t in STUDY.trials(tried) if t.terrain.kind == 'pegboard' and t.cycles == 2]
     for spacing in SPACINGS_BL:
-        seeds = {
-            mode: [
+        for compliance in MODES.values():
+            seeds = [
                 t.seed
                 for t in among_pegs
-                if t.terrain.spacing_bl == spacing and t.compliance == MODES[mode]
+                if t.terrain.spacing_bl == spacing and t.compliance == compliance
             ]
-            for mode in (OPEN, PUSHING)
-        }
-        assert sorted(seeds[OPEN]) == sorted(seeds[PUSHING]) == list(range(20))
+            assert sorted(seeds) == list(range(20))
 
 
 def test_gain_is_paired_by_placement_so_its_interval_leaves_their_spread_out(
@@ -122,6 +117,7 @@ def test_without_pybullet_only_open_ground_is_told(tried: Outcome, tmp_path: Pat
     assert {row.case for row in STUDY.rows(bare)} == {
         'open ground, open loop',
         'open ground, pushing',
+        'open ground, gentle yielding',
     }
     assert all(row.pybullet is None for row in STUDY.rows(bare))
     STUDY.draw(bare, tmp_path)

@@ -9,7 +9,7 @@ import pytest
 from PIL.PngImagePlugin import PngImageFile
 
 from omega_turn_lab.obstacle_trial import ObstacleTrial
-from omega_turn_lab.studies.rocks import GAITS, PILES, STUDY
+from omega_turn_lab.studies.rocks import GAITS, OTHER_RELIEFS_BL, PILES, STUDY
 from omega_turn_lab.studies.rows import Row
 from omega_turn_lab.studies.run import ROBOT
 from omega_turn_lab.studies.study import Outcome, Plan
@@ -27,7 +27,14 @@ def made_up(task: Task) -> dict[str, Any]:
     on_rocks = task.terrain.kind == 'rocks'
     rolled = on_rocks and task.seed % 4 == 0
     angle = 0.5 * HARD + task.seed % 2 - 0.5 if on_rocks else HARD
-    return {'angle_deg': angle, 'least_upright': -0.9 if rolled else 0.9, 'poses': []}
+    return {
+        'angle_deg': angle,
+        'total_deg': 2.0 * angle,
+        'least_upright': -0.9 if rolled else 0.9,
+        'time': [0.0, 1.0],
+        'poses': [[0.0, 0.0, 0.0], [0.1, 0.0, 1.0]],
+        'yaw_angles': [[0.0] * task.robot.n_yaw] * 2,
+    }
 
 
 @pytest.fixture(scope='module')
@@ -54,7 +61,7 @@ def value(table: list[Row], case: str, quantity: str) -> float | None:
 
 def test_each_gait_meets_the_same_piles(tried: Outcome) -> None:
     piles = [task for task in tried.tried if task.terrain.kind == 'rocks']  # type: ignore[attr-defined]
-    assert len(piles) == len(GAITS) * PILES
+    assert len(piles) == (len(GAITS) + len(OTHER_RELIEFS_BL)) * PILES
     for task in piles:
         # What lies flat may sag; what lifts itself needs its torque.
         assert (task.pitch_effort > 0.0) is isinstance(task.gait, WaveGait)  # type: ignore[attr-defined]
@@ -66,6 +73,12 @@ def test_what_rocks_leave_of_a_turn_is_told(table: list[Row], gait: str) -> None
     assert value(table, f'{gait}, rocks', 'angle') == pytest.approx(0.5 * HARD)
     assert value(table, f'{gait}, rocks', 'kept') == pytest.approx(0.5)
     assert value(table, f'{gait}, rocks', 'rolled_over') == 0.25
+
+
+def test_more_and_less_soil_is_told_for_the_omega_turn(table: list[Row]) -> None:
+    for relief in OTHER_RELIEFS_BL:
+        case = f'omega turn, rocks, soil {relief:g} BL below their tops'
+        assert value(table, case, 'angle') == pytest.approx(0.5 * HARD)
 
 
 def test_file_tells_every_trial_but_not_its_motion(tried: Outcome) -> None:

@@ -13,7 +13,7 @@ import omega_turn_lab.ros_environment  # noqa: F401  (first: it may restart the 
 from omega_turn_ros.nodes.admittance_node import ADMITTANCE_PARAMETERS
 from omega_turn_ros.nodes.gait_parameters import GAIT_PARAMETERS
 from omega_turn_ros.nodes.parameters import ParameterSpec
-from omega_turn_sim_bridge.bridge_node import BRIDGE_PARAMETERS
+from omega_turn_sim_bridge.bridge_parameters import BRIDGE_PARAMETERS
 
 NODES = {
     'gait_node': GAIT_PARAMETERS,

@@ -24,7 +24,8 @@ OPTIMISERS = {'cma'}  # for design alone
 
 ROS_SUFFIXES = ('_msgs', '_srvs', '_interfaces')
 ROS_PREFIXES = ('rclpy', 'rosidl', 'rmw_', 'ament_', 'launch', 'tf2', 'rosbag2', 'ros2')
-ROS_ROOMS = (f'{CONTROL}.nodes', f'{BRIDGE}.bridge_node', f'{BRIDGE}.start', 'launch')
+ROS_BRIDGE = tuple(f'{BRIDGE}.{name}' for name in ('bridge_node', 'bridge_parameters', 'start'))
+ROS_ROOMS = (f'{CONTROL}.nodes', *ROS_BRIDGE, 'launch')
 # Of the lab: what talks to the nodes. The door (cli) may, but only once a command asks for it.
 ROS_LAB = tuple(
     f'{LAB}.{name}'
@@ -280,7 +281,7 @@ print(len(names))
 """
     for absent, package, left_out in (
         ('rclpy,sensor_msgs,std_msgs,builtin_interfaces,pybullet', CONTROL, f'{CONTROL}.nodes'),
-        ('rclpy,sensor_msgs,std_msgs,builtin_interfaces', BRIDGE, f'{BRIDGE}.bridge_node'),
+        ('rclpy,sensor_msgs,std_msgs,builtin_interfaces', BRIDGE, f'{BRIDGE}.bridge_'),
         (f'pybullet,{BRIDGE},{LAB}', f'{CONTROL}.nodes', 'none'),
     ):
         run = subprocess.run(

@@ -19,7 +19,8 @@ from omega_turn_ros.nodes.gait_node import GaitNode
 from omega_turn_ros.nodes.gait_parameters import GAIT_PARAMETERS
 from omega_turn_ros.nodes.parameters import ParameterSpec
 from omega_turn_ros.nodes.time import nanoseconds_of
-from omega_turn_sim_bridge.bridge_node import BRIDGE_PARAMETERS, PyBulletBridge
+from omega_turn_sim_bridge.bridge_node import PyBulletBridge
+from omega_turn_sim_bridge.bridge_parameters import BRIDGE_PARAMETERS
 
 MakeTurner = Callable[..., Turner]
 

@@ -16,7 +16,7 @@ from omega_turn_ros.nodes.launch_arguments import (
     read_arguments,
 )
 from omega_turn_ros.nodes.names import LONGEST
-from omega_turn_sim_bridge.bridge_node import BRIDGE_PARAMETERS
+from omega_turn_sim_bridge.bridge_parameters import BRIDGE_PARAMETERS
 
 
 def read(**given: str) -> LaunchSettings:

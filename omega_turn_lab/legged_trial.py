@@ -1,4 +1,4 @@
-"""One cycle of a robot with legs in PyBullet, open loop, to hold beside the quasi-static model."""
+"""A few cycles of a robot with legs in PyBullet, open loop, to hold beside the model."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ STEP_IN = 1.5  # [s] from standing into the walking posture, with all that slips
 
 @dataclass(frozen=True, slots=True)
 class LeggedTrial:
-    """A cycle of walking, then one that turns.
+    """A cycle of walking, then some that turn.
 
     Attributes:
         robot: the robot.
@@ -26,7 +26,8 @@ class LeggedTrial:
         period: of a cycle [s].
         friction: kinetic coefficient.
         static_friction: of a foot at rest; 0 is the kinetic one.
-        samples: readings kept of the turning cycle; the first shape comes on top.
+        cycles: that turn. No two slip alike, on ground that sticks least of all.
+        samples: readings kept of the first of them; its first shape comes on top.
     """
 
     code: ClassVar[tuple[str, ...]] = (
@@ -40,10 +41,13 @@ class LeggedTrial:
     period: float = 6.0
     friction: float = 0.5
     static_friction: float = 0.0
+    cycles: int = 4
     samples: int = 60
 
     def __post_init__(self) -> None:
-        """Refuse more readings than the robot gives."""
+        """Refuse no cycle, and more readings than the robot gives."""
+        if self.cycles < 1:
+            raise BadInputError('cycles', self.cycles, 'at least 1')
         if not 1 <= self.samples <= round(self.period / READING):
             raise BadInputError('samples', self.samples, f'1..{round(self.period / READING)}')
 
@@ -52,12 +56,12 @@ class LeggedTrial:
         return f'PyBullet trial of {self.robot.name}, {self.gait}'
 
     def run(self) -> dict[str, Any]:
-        """Play both cycles.
+        """Play all cycles.
 
         Returns:
-            Of the turning cycle `angle_deg`, `advance_bl` along the first heading [body lengths],
-            and the motion: `fraction` of the cycle, `poses` x [m], y [m], heading [rad], `angles`
-            of all joints [rad].
+            `angle_deg`, mean of the turning cycles, and each of them in `cycle_angles_deg`; of the
+            first, `advance_bl` along its first heading [body lengths] and the motion: `fraction`
+            of the cycle, `poses` x [m], y [m], heading [rad], `angles` of all joints [rad].
         """
         from omega_turn_sim_bridge.simulation import Simulation
         from omega_turn_sim_bridge.simulation_config import SimulationConfig
@@ -83,11 +87,17 @@ class LeggedTrial:
             for first, last in zip([0, *kept[:-1]], kept):
                 play(turning[first + 1 : last + 1])
                 seen.append(simulation.observe())
+            headings = [seen[0].pose[2], seen[-1].pose[2]]
+            for _ in range(self.cycles - 1):
+                play(turning[1:])
+                headings.append(simulation.observe().pose[2])
         poses = np.array([s.pose for s in seen])
-        x, y, heading = poses[-1] - poses[0]
+        x, y, _ = poses[-1] - poses[0]
+        turned = np.degrees(np.diff(headings))
         toward = poses[0, 2]
         return {
-            'angle_deg': math.degrees(heading),
+            'angle_deg': float(turned.mean()),
+            'cycle_angles_deg': turned.round(6).tolist(),
             'advance_bl': (math.cos(toward) * x + math.sin(toward) * y) / self.robot.length,
             'fraction': (kept / readings).tolist(),
             'poses': poses.round(6).tolist(),

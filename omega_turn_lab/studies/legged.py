@@ -74,6 +74,12 @@ def _played(outcome: Outcome, task: LeggedTrial, quantity: str = 'angle_deg') ->
     return None if found is None else float(found[quantity])
 
 
+def _spread(outcome: Outcome, task: LeggedTrial) -> float | None:
+    """Standard deviation over its cycles [deg]."""
+    found = outcome.tried.get(task)
+    return None if found is None else float(np.std(found['cycle_angles_deg'], ddof=1))
+
+
 def _rows(outcome: Outcome) -> list[Row]:
     rows = []
     for path in PATHS:
@@ -91,6 +97,10 @@ def _rows(outcome: Outcome) -> list[Row]:
                 rows.append(
                     Row(f'{case}, carpet', params, 'angle', 'deg', None, None, None, carpet)
                 )
+                for ground, mu_s in (('', 0.0), (', carpet', CARPET)):
+                    spread = _spread(outcome, trial(path, a_3, mu_s))
+                    name = f'{case}{ground}'
+                    rows.append(Row(name, params, 'angle_std', 'deg', None, None, None, spread))
     return [*rows, *_height_rows(), _walking_row(outcome)]
 
 
@@ -130,6 +140,7 @@ def _records(outcome: Outcome) -> list[dict[str, Any]]:
                 'friction': task.friction,
                 'static_friction': task.static_friction or task.friction,
                 'angle_deg': found['angle_deg'],
+                'cycle_angles_deg': found['cycle_angles_deg'],
                 'advance_bl': found['advance_bl'],
             }
         )

@@ -100,7 +100,7 @@ def test_feet_bear_what_a_level_body_puts_on_them(robot: LeggedRobot) -> None:
 def test_it_turns_as_far_as_the_model_says(robot: LeggedRobot, a_3_deg: float) -> None:
     """Within 10 %, whichever way the model shares the weight."""
     gait = replace(walking_gait(), a_3=math.radians(a_3_deg))
-    played = LeggedTrial(robot, gait).run()
+    played = LeggedTrial(robot, gait, cycles=2).run()
     cycle = gait.angles(np.linspace(0.0, 2.0 * np.pi, 361))
     for loads in ('equal', 'static'):
         model = math.degrees(LeggedMotion(robot, loads).turn(cycle))
@@ -112,12 +112,12 @@ def test_walking_goes_as_far_as_the_model_says_and_the_printed_path_turns_nowher
     robot: LeggedRobot,
 ) -> None:
     printed = replace(walking_gait(), sigma=0.0, phi_3=0.0)
-    played = LeggedTrial(robot, printed).run()
+    played = LeggedTrial(robot, printed, cycles=1).run()
     assert abs(played['angle_deg']) < 1.0
     walking = replace(printed, a_3=0.0)
     path = walking.angles(np.linspace(0.0, 2.0 * np.pi, 361))
     advance = LeggedMotion(robot).pose_along(path)[-1, 0] / robot.length
-    walked = LeggedTrial(robot, walking).run()
+    walked = LeggedTrial(robot, walking, cycles=1).run()
     assert walked['advance_bl'] == pytest.approx(advance, rel=0.1)
     assert abs(walked['angle_deg']) < 0.5
 

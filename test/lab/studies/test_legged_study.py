@@ -52,7 +52,7 @@ def test_figure_and_records(outcome: Outcome, tmp_path: Path) -> None:
     assert legged.STUDY.records(outcome) == []
     motion = legged._by_theory(10.0)
     played = {
-        task: {**motion, 'angle_deg': 1.0, 'advance_bl': 0.3}
+        task: {**motion, 'angle_deg': 1.0, 'cycle_angles_deg': [0.5, 1.5], 'advance_bl': 0.3}
         for task in legged.STUDY.trials(outcome)
     }
     tried = Outcome(outcome.plan, {}, {}, played)
@@ -60,4 +60,7 @@ def test_figure_and_records(outcome: Outcome, tmp_path: Path) -> None:
     assert len(records) == len(played)
     assert {r['w_3'] for r in records} == set(legged.PATHS)
     assert {r['static_friction'] for r in records} == {0.5, legged.CARPET}
-    assert all(r.pybullet is not None for r in legged.STUDY.rows(tried) if r.quantity == 'angle')
+    rows = legged.STUDY.rows(tried)
+    assert all(r.pybullet is not None for r in rows if r.quantity == 'angle')
+    spreads = [r.pybullet for r in rows if r.quantity == 'angle_std']
+    assert spreads == [pytest.approx(0.5**0.5)] * 2 * len(legged.A_3_DEG)

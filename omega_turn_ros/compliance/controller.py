@@ -20,7 +20,7 @@ from omega_turn_ros.compliance.external_torque import (
     external_torque_step,
     needed_torques,
 )
-from omega_turn_ros.errors import ConvergenceError
+from omega_turn_ros.errors import BadInputError, ConvergenceError
 from omega_turn_ros.mechanics.chain import PlanarChain
 
 Array = NDArray[np.float64]
@@ -58,11 +58,13 @@ class ComplianceState:
         admittance: amplitude offsets and their rates.
         filtered: low-passed external torque [N m], shape (N,).
         external: external torque behind the dead band [N m], shape (N,).
+        zero: efforts that count as none, see `tare` [N m], shape (N,).
     """
 
     admittance: AdmittanceState
     filtered: Array
     external: Array
+    zero: Array
 
 
 class ComplianceController:
@@ -87,7 +89,22 @@ class ComplianceController:
     def initial_state(self) -> ComplianceState:
         """No offset, no torque."""
         zero = np.zeros(self.chain.n_joints)
-        return ComplianceState(AdmittanceState(), zero, zero)
+        return ComplianceState(AdmittanceState(), zero, zero, zero)
+
+    def tare(self, state: ComplianceState, efforts: Array) -> ComplianceState:
+        """Let what a robot reports at rest count as no effort: the bias of its sensors.
+
+        Args:
+            state: as returned before.
+            efforts: of the yaw joints over some readings at rest [N m], shape (T, N), T >= 1.
+
+        Raises:
+            BadInputError: the shape is another.
+        """
+        if efforts.ndim != 2 or not efforts.size or efforts.shape[1] != self.chain.n_joints:
+            expected = f'shape (T, {self.chain.n_joints}), T >= 1'
+            raise BadInputError('efforts', efforts.shape, expected)
+        return replace(state, zero=efforts.mean(axis=0))
 
     def step(
         self,
@@ -116,12 +133,12 @@ class ComplianceController:
         except ConvergenceError:
             return self.relax(state, dt)
         filtered, external = external_torque_step(
-            state.filtered, efforts, needed, dt, config.torque
+            state.filtered, efforts - state.zero, needed, dt, config.torque
         )
         jacobian = wave_jacobian(*phases, config.k_f, config.k_t, self.chain.n_joints)
         force = np.array(config.torque_scale) * (jacobian @ external)
         law = admittance_step(state.admittance, force, dt, config.law)
-        return ComplianceState(law, filtered, external)
+        return ComplianceState(law, filtered, external, state.zero)
 
     def relax(self, state: ComplianceState, dt: float) -> ComplianceState:
         """Advance while efforts or waves are missing: forget torques, return to the gait."""

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections import deque
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from builtin_interfaces.msg import Time
+from numpy.typing import NDArray
 from rclpy.context import Context
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
+from std_srvs.srv import Trigger
 
 from omega_turn_ros.compliance.admittance import AdmittanceConfig, stored_energy
 from omega_turn_ros.compliance.controller import ComplianceConfig, ComplianceController
@@ -28,7 +31,10 @@ from omega_turn_ros.nodes.runner import run_node
 from omega_turn_ros.nodes.time import StepTimer, nanoseconds_of, stamp_of
 from omega_turn_ros.robot import Robot, load_robot
 
+Array = NDArray[np.float64]
+
 WAVES = ('forward', 'turning')
+TARED = 50  # readings at rest whose mean effort a tare takes for zero
 WATCHDOG_PERIOD = 0.05  # [s] between offsets published while efforts are missing
 
 ADMITTANCE_PARAMETERS = (
@@ -122,7 +128,7 @@ class AdmittanceNode(Node):
         self._phases_stamp, self._playing = -1, False
         self._answered = -1
         self._relaxing = False
-        self._stamp = Time()
+        self._at_rest: deque[Array] = deque(maxlen=TARED)
         lock_step = self._settings['lock_step']
         qos = STATE if lock_step else STATE_INPUT
         self._lock_step = lock_step
@@ -131,6 +137,7 @@ class AdmittanceNode(Node):
         self._wave_phases = Inbox(self, JointState, 'wave_phases', qos, on_phases)
         self._amplitudes = self.create_publisher(JointState, 'wave_amplitudes', STATE)
         self._writer = JointWriter(WAVES)
+        self.create_service(Trigger, '~/tare', self._on_tare)
         self._pending: JointState | None = None
         steady = steady_clock()
         self.create_timer(WATCHDOG_PERIOD, self._on_watchdog, clock=steady)
@@ -197,8 +204,10 @@ class AdmittanceNode(Node):
         phases = self._phases if self._playing and self._phases_seen.fresh else None
         if phases is not None:
             self._state = self._controller.step(self._state, angles, rates, efforts, phases, dt)
+            self._at_rest.clear()
         else:
             self._state = self._controller.relax(self._state, dt)
+            self._at_rest.append(efforts)
         self._publish(message.header.stamp)
 
     def _publish(self, stamp: Time) -> None:
@@ -206,6 +215,18 @@ class AdmittanceNode(Node):
         self._amplitudes.publish(
             self._writer.fill(stamp, np.array(law.offset), np.array(law.rate))
         )
+
+    def _on_tare(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        readings = len(self._at_rest)
+        response.success = readings == TARED and self._efforts_seen.fresh
+        if response.success:
+            self._state = self._controller.tare(self._state, np.array(self._at_rest))
+            largest = float(np.abs(self._state.zero).max())
+            response.message = f'efforts at rest count as 0 now: {largest:.3g} N m at most'
+            self.get_logger().info(response.message)
+        else:
+            response.message = f'{TARED} readings of efforts at rest are needed, not {readings}'
+        return response
 
     def _on_watchdog(self) -> None:
         """While efforts are missing, bring the offsets home on the steady clock."""
@@ -224,6 +245,7 @@ class AdmittanceNode(Node):
             problems.append('amplitude offset at its bound')
         facts = {
             'offset forward, turning [rad]': law.offset,
+            'largest tare [N m]': float(np.abs(self._state.zero).max()),
             'largest external torque [N m]': float(np.abs(self._state.external).max()),
             'stored energy [J]': stored_energy(law, config.law),
             'waves playing': self._phases_seen.fresh,

@@ -129,14 +129,14 @@ class User:
         """Publish a turn angle [rad]."""
         self.send('turn_angle', Float64(data=float(angle)))
 
-    def call(self, service: str) -> Trigger.Response:
-        """Call a Trigger service and check that it succeeded."""
+    def call(self, service: str, succeeds: bool = True) -> Trigger.Response:
+        """Call a Trigger service and check that it succeeded, or did not."""
         if service not in self._clients:
             self._clients[service] = self.node.create_client(Trigger, service)
         client = self._clients[service]
         self._graph.spin_until(client.service_is_ready, f'service {service}')
         response = self._answer(client.call_async(Trigger.Request()), service)
-        assert response.success
+        assert response.success is succeeds
         return response
 
     def set_parameter(self, node: str, name: str, value: Any) -> SetParametersResult:

@@ -271,3 +271,18 @@ def test_a_live_change_of_the_law_moves_no_offset_at_once(
     after = np.array(compliant.run(compliant.step))
     assert np.abs(after - before).max() <= compliant.step * 1.0
     compliant.run(0.5)
+
+
+def test_a_tare_takes_the_efforts_at_rest_for_zero(graph: Graph) -> None:
+    compliant = Compliant(graph)
+    compliant.efforts[PUSHED] = -PUSH  # as a push would, but it is the sensor's bias
+    untared = compliant.run(0.5)
+    assert abs(untared[0]) > 0.05
+    answer = compliant.user.call('admittance_node/tare', succeeds=False)  # a cycle plays
+    assert '50 readings' in answer.message
+    compliant.run(3.0, playing=0.0)
+    assert compliant.offsets == (0.0, 0.0)
+    assert '1.7 N m' in compliant.user.call('admittance_node/tare').message
+    assert compliant.run(0.5) == (0.0, 0.0)
+    compliant.efforts[PUSHED] -= PUSH
+    assert compliant.run(0.5) == pytest.approx(untared, rel=0.1)

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from omega_turn_ros.errors import BadInputError, SimulationError
 from omega_turn_ros.robot import STANDARD_GRAVITY, LeggedRobot, Robot
 from omega_turn_sim_bridge.body_frame import tilted_heading
+from omega_turn_sim_bridge.client import open_client
 from omega_turn_sim_bridge.engine import pybullet
 from omega_turn_sim_bridge.granular import GranularGround
 from omega_turn_sim_bridge.legged import legged_urdf
@@ -45,10 +46,7 @@ class Simulation:
     def __init__(self, robot: Robot, config: SimulationConfig | None = None) -> None:
         self.robot = robot
         self.config = config or SimulationConfig()
-        mode = pybullet.GUI if self.config.gui else pybullet.DIRECT
-        self._client = pybullet.connect(mode)
-        if self._client < 0:
-            raise SimulationError('PyBullet gave no physics client')
+        self._client = open_client(self.config.gui, robot.length)
         self._effort_limit = self.config.effort_limit or robot.effort_limit
         self._velocity_limit = self.config.velocity_limit or robot.velocity_limit
         self._joints = list(range(robot.n_joints))

@@ -73,6 +73,7 @@ setup(
         ],
         'cluster': ['dask[distributed]>=2023.1'],
         'test': [
+            'dask[distributed]>=2023.1',
             'hypothesis>=6',
             'mypy>=1.8',
             'psutil>=5',

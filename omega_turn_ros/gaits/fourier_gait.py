@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from omega_turn_ros.errors import BadInputError
+from omega_turn_ros.gaits.gait_fields import check_number, with_fields
 from omega_turn_ros.gaits.wave_gait import WaveGait
 
 Array = NDArray[np.float64]
@@ -40,14 +41,14 @@ class FourierGait(WaveGait):
     def __post_init__(self) -> None:
         """Refuse series that are no series of finite numbers."""
         for field in ('k_f', 'k_t'):
-            _check_number(f'gait field {field}', getattr(self, field))
+            check_number(field, getattr(self, field))
         for field in ('forward', 'turning', 'lag'):
             series = getattr(self, field)
             if not isinstance(series, tuple) or len(series) % 2 == 0:
                 expected = 'an odd number of coefficients: mean, then cosine and sine pairs'
                 raise BadInputError(f'gait field {field}', series, expected)
             for value in series:
-                _check_number(f'gait field {field}', value)
+                check_number(field, value)
 
     def phases(self, phase: ArrayLike) -> tuple[Array, Array]:
         """See `WaveGait.phases`."""
@@ -79,9 +80,7 @@ class FourierGait(WaveGait):
         Raises:
             BadInputError: a field is missing, unknown or no series of finite numbers.
         """
-        if not isinstance(parameters, dict) or set(parameters) != set(cls.__slots__):
-            expected = f'exactly the fields {sorted(cls.__slots__)}'
-            raise BadInputError('gait parameters', parameters, expected)
+        parameters = with_fields(parameters, cls.__slots__)
         series = {k: v for k, v in parameters.items() if k not in ('k_f', 'k_t')}
         for field, values in series.items():
             if not isinstance(values, list):
@@ -97,13 +96,6 @@ class FourierGait(WaveGait):
             else round(float(value), 9)
             for field, value in asdict(self).items()
         }
-
-
-def _check_number(field: str, value: object) -> None:
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise BadInputError(field, value, 'numbers')
-    if not math.isfinite(value):
-        raise BadInputError(field, value, 'finite numbers')
 
 
 def fourier_waves(

@@ -39,6 +39,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.gaits.gait import Gait
+from omega_turn_ros.gaits.gait_fields import check_number, with_fields
 from omega_turn_ros.robot import LeggedRobot, Robot
 
 Array = NDArray[np.float64]
@@ -79,12 +80,9 @@ class LeggedGait(Gait):
     def __post_init__(self) -> None:
         """Refuse what is no gait."""
         for field in self.__slots__:
-            value = getattr(self, field)
-            whole = field == 'n_pairs'
-            if isinstance(value, bool) or not isinstance(value, int if whole else (int, float)):
-                raise BadInputError(f'gait field {field}', value, f'a{" whole" * whole} number')
-            if not math.isfinite(value):
-                raise BadInputError(f'gait field {field}', value, 'a finite number')
+            check_number(field, getattr(self, field))
+        if not isinstance(self.n_pairs, int):
+            raise BadInputError('gait field n_pairs', self.n_pairs, 'a whole number')
         for field, low, high in (
             ('n_pairs', 2, math.inf),
             ('duty', 1e-3, 1.0 - 1e-3),
@@ -193,10 +191,7 @@ class LeggedGait(Gait):
         Raises:
             BadInputError: a parameter is missing, unknown or out of range.
         """
-        if not isinstance(parameters, dict) or set(parameters) != set(cls.__slots__):
-            expected = f'exactly the fields {sorted(cls.__slots__)}'
-            raise BadInputError('gait parameters', parameters, expected)
-        return cls(**parameters)
+        return cls(**with_fields(parameters, cls.__slots__))
 
 
 class LeggedPostures:

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.gaits.gait import Gait
+from omega_turn_ros.gaits.gait_fields import check_number, with_fields
 from omega_turn_ros.robot import Robot
 
 Array = NDArray[np.float64]
@@ -49,10 +50,7 @@ class Sidewinding(Gait):
         """Refuse anything that is not a finite number, and waves that are none."""
         for field in self.__slots__:
             value = getattr(self, field)
-            if isinstance(value, bool) or not isinstance(value, (int, float)):
-                raise BadInputError(f'gait field {field}', value, 'a number')
-            if not math.isfinite(value):
-                raise BadInputError(f'gait field {field}', value, 'a finite number')
+            check_number(field, value)
             if field != 'a_h' and value <= 0.0:  # a negative a_h is the mirror image
                 raise BadInputError(f'gait field {field}', value, 'a number > 0')
 
@@ -75,10 +73,7 @@ class Sidewinding(Gait):
         Raises:
             BadInputError: a field is missing, unknown or not a finite number.
         """
-        if not isinstance(parameters, dict) or set(parameters) != set(cls.__slots__):
-            expected = f'exactly the fields {sorted(cls.__slots__)}'
-            raise BadInputError('gait parameters', parameters, expected)
-        return cls(**parameters)
+        return cls(**with_fields(parameters, cls.__slots__))
 
     def to_mapping(self) -> dict[str, Any]:
         """Parameters for a library file, rounded to 1e-9."""

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from omega_turn_ros.errors import BadInputError
+from omega_turn_ros.gaits.gait_fields import check_number, with_fields
 from omega_turn_ros.gaits.wave_gait import WaveGait
 
 
@@ -43,11 +43,7 @@ class TwoWaveGait(WaveGait):
     def __post_init__(self) -> None:
         """Refuse anything that is not a finite number."""
         for field in self.__slots__:
-            value = getattr(self, field)
-            if isinstance(value, bool) or not isinstance(value, (int, float)):
-                raise BadInputError(f'gait field {field}', value, 'a number')
-            if not math.isfinite(value):
-                raise BadInputError(f'gait field {field}', value, 'a finite number')
+            check_number(field, getattr(self, field))
 
     def phases(self, phase: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return (tau_f, tau_t) [rad], each shape (...), at gait phase tau_t [rad], (...)."""
@@ -78,10 +74,7 @@ class TwoWaveGait(WaveGait):
         Raises:
             BadInputError: a field is missing, unknown or not a finite number.
         """
-        if not isinstance(parameters, dict) or set(parameters) != set(cls.__slots__):
-            expected = f'exactly the fields {sorted(cls.__slots__)}'
-            raise BadInputError('gait parameters', parameters, expected)
-        return cls(**parameters)
+        return cls(**with_fields(parameters, cls.__slots__))
 
     def to_mapping(self) -> dict[str, Any]:
         """Parameters for a library file, rounded to 1e-9."""

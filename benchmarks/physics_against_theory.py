@@ -20,7 +20,7 @@ from omega_turn_sim_bridge.terrain_config import load_terrain
 
 def quasi_static_deg(robot: Robot, gait: TwoWaveGait) -> float:
     path = gait.angles(np.linspace(0.0, 2.0 * np.pi, 721), robot.n_yaw)
-    return math.degrees(heading_along(PlanarChain.of_robot(robot, 8), path)[-1])
+    return math.degrees(heading_along(PlanarChain.of_robot(robot), path)[-1])
 
 
 def physics_deg(robot: Robot, gait: TwoWaveGait, period: float, config: SimulationConfig) -> float:

@@ -75,8 +75,8 @@ def _account(
     search = f'{design.evaluations} cycles integrated'
     if isinstance(design, Design):
         search = (
-            f'{design.method}: {design.starts} starts, whose tops are '
-            f'{" ".join(f"{top:.2f}" for top in design.tops)} of the best; {search}, stopped by '
+            f'{design.method}: {design.starts} starts, the last searches came to '
+            f'{" ".join(f"{top:.4g}" for top in design.tops)}; {search}, stopped by '
             f'{design.reason}'
         )
     return (

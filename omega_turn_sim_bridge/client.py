@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import sys
+
 from omega_turn_ros.errors import SimulationError
 from omega_turn_sim_bridge.engine import pybullet
 
@@ -19,8 +22,11 @@ def open_client(gui: bool, body_length: float) -> int:
         PyBullet's id of the client.
 
     Raises:
-        SimulationError: PyBullet has no client to give, or no display for the window.
+        SimulationError: PyBullet has no client to give, or DISPLAY is not set. Where it names a
+            display that is not there, PyBullet itself ends the process, with a line that says so.
     """
+    if gui and sys.platform == 'linux' and not os.environ.get('DISPLAY'):
+        raise SimulationError('a window needs a display: DISPLAY is not set')
     client: int = pybullet.connect(pybullet.GUI if gui else pybullet.DIRECT)
     if client < 0:
         raise SimulationError('PyBullet gave no physics client')

@@ -19,7 +19,7 @@ SWEEP = Sweep(NAME, LIMITS_DEG, _family, 'limit {theta_max_deg:g}°', 'limit {:g
 
 
 def _rows(outcome: Outcome) -> list[Row]:
-    """Angles, then how far the limit modulates each: the paper's 'tunable range'."""
+    """Angles, best k_t, and how far the limit modulates each turn: the paper's 'tunable range'."""
     rows = SWEEP.rows(outcome)
     smallest, largest = (_family(outcome.plan, limit) for limit in (LIMITS_DEG[0], LIMITS_DEG[-1]))
     for low, high in zip(smallest, largest):

@@ -8,10 +8,9 @@ on when it comes back to a shape, that matters.
 from __future__ import annotations
 
 from numpy.typing import ArrayLike
-from scipy.spatial import ConvexHull
 
 from omega_turn_ros.mechanics.chain import PlanarChain
-from omega_turn_ros.mechanics.swept_area import body_corners, swept_area_by_start
+from omega_turn_ros.mechanics.swept_area import body_corners, hull_area, swept_area_by_start
 
 READINGS = {
     'swept_area': 'hull of the body axis',
@@ -40,14 +39,14 @@ def area_readings(
     from shapely import polygons, union_all
 
     squared = float(chain.lengths.sum()) ** 2
-    joints = chain.outline(path, poses)[:, 1:-1].reshape(-1, 2)
+    joints = chain.outline(path, poses)[:, 1:-1]
     covered = union_all(polygons(body_corners(chain, width, path, poses).reshape(-1, 4, 2)))
     by_start = swept_area_by_start(chain, path, poses, STARTS)
     areas = {
         'swept_area': float(by_start[0]),
         'swept_area_least': float(by_start.min()),
         'swept_area_most': float(by_start.max()),
-        'swept_area_markers': float(ConvexHull(joints).volume) / squared,
+        'swept_area_markers': hull_area(joints) / squared,
         'swept_area_union': float(covered.area) / squared,
     }
     return {name: areas[name] for name in READINGS}

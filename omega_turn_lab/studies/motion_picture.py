@@ -28,7 +28,7 @@ def draw_motion(axes: Axes, trial: ObstacleTrial, result: Result) -> None:
     Args:
         axes: to draw on; its ticks are taken away.
         trial: whose ground and robot.
-        result: with `poses` and `yaw_angles`.
+        result: with `poses`, `yaw_angles` and `total_deg`.
     """
     from matplotlib.colors import to_rgb
     from matplotlib.patches import Polygon

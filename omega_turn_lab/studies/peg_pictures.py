@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -26,6 +26,7 @@ def draw_pegboard(
     path: Path,
     spacings: Sequence[float],
     curves: Mapping[str, Sequence[Spread]],
+    stressed: Collection[str],
     free: float,
     motions: Mapping[str, tuple[ObstacleTrial, Result]],
 ) -> None:
@@ -35,12 +36,14 @@ def draw_pegboard(
         path: of the picture.
         spacings: of the pegs [BL].
         curves: angle per cycle [deg] of each mode, one per spacing.
+        stressed: modes drawn thick.
         free: angle per cycle on open ground [deg].
         motions: trials to be seen from above, by title.
     """
     with new_figure(path, 5.4) as figure:
         grid = figure.add_gridspec(2, len(motions), height_ratios=(1.15, 1.0))
-        _draw_angles(figure.add_subplot(grid[0, :]), spacings, curves, free)
+        axes = figure.add_subplot(grid[0, :])
+        _draw_angles(axes, spacings, curves, stressed, free)
         figure.legend(loc='outside upper center', ncols=2)
         for i, (title, (trial, result)) in enumerate(motions.items()):
             place = figure.add_subplot(grid[1, i])
@@ -49,7 +52,11 @@ def draw_pegboard(
 
 
 def _draw_angles(
-    axes: Axes, spacings: Sequence[float], curves: Mapping[str, Sequence[Spread]], free: float
+    axes: Axes,
+    spacings: Sequence[float],
+    curves: Mapping[str, Sequence[Spread]],
+    stressed: Collection[str],
+    free: float,
 ) -> None:
     axes.axhline(free, color='0.6', linewidth=0.8, linestyle=':')
     axes.annotate('open ground', (spacings[-1], free), ha='right', va='bottom', color='0.4')
@@ -64,7 +71,7 @@ def _draw_angles(
             color=colour,
             marker=EXTRA_MARKERS[i],
             ms=3.5,
-            linewidth=0.9 if i < 2 else 0.5,
+            linewidth=1.2 if mode in stressed else 0.4,
             elinewidth=0.6,
             capsize=2.0,
             label=mode,

@@ -43,6 +43,7 @@ MODES: dict[str, ComplianceConfig | None] = {
     PUSHING: ComplianceConfig(),
     # M, B, K of the paper read straight: an outside push moves the amplitudes the way it pushes.
     'yielding': _yielding((1.0, 1.0)),
+    # A third of it, within the default's bound: what pays where pegs leave no room to push.
     GENTLE: _yielding((0.3, 0.3), law=AdmittanceConfig()),
     'forward wave yielding': _yielding((1.0, 0.0)),
     # The paper's gain with the efforts taken as they are: the ground's friction counts as a push.
@@ -192,7 +193,7 @@ def _draw(outcome: Outcome, out: Path) -> None:
     typical = _typical_placement(outcome, PICTURED)
     pictured = {mode: trial(outcome, PICTURED, mode, typical) for mode in COMPARED}
     motions = {mode: (task, outcome.tried[task]) for mode, task in pictured.items()}
-    draw_pegboard(out / f'{NAME}.png', SPACINGS_BL, curves, free, motions)
+    draw_pegboard(out / f'{NAME}.png', SPACINGS_BL, curves, COMPARED, free, motions)
 
 
 STUDY = Study(

@@ -36,16 +36,16 @@ if TYPE_CHECKING:
 NAME = 'rocks'
 PILES = 20
 OTHER_RELIEFS_BL = (0.005, 0.01, 0.06)  # the omega turn is tried with more and with less soil, too
-PICTURED = ('omega turn', 'compliant omega turn', 'offset turn')  # on the typical pile
+OMEGA, COMPLIANT = 'omega turn', 'compliant omega turn'
 PLANAR = {
-    'omega turn': 1.0,
-    'compliant omega turn': 1.0,
+    OMEGA: 1.0,
+    COMPLIANT: 1.0,
     'offset turn': 0.0,
     'geometric turn': 1.5,
 }
-COMPLIANT = 'compliant omega turn'
 FREQUENCY = 'frequency turn'
 GAITS = (*PLANAR, FREQUENCY)
+PICTURED = (OMEGA, COMPLIANT, 'offset turn')  # on the typical pile
 HARD, ROCKS = 'hard ground', 'rocks'
 ROLLED = 0.0  # cosine of tilt below which a robot counts as rolled over
 SIDE, BAR = 0.2, 0.36  # of bars: from their gait's place, and width
@@ -80,7 +80,7 @@ def _pile(outcome: Outcome, gait: str) -> list[ObstacleTrial]:
 def _filled(outcome: Outcome, relief_bl: float) -> list[ObstacleTrial]:
     """Piles filled with soil up to `relief_bl` body lengths below the top of the median rock."""
     terrain = replace(load_terrain('rocks'), rock_relief_bl=relief_bl)
-    return [_on_rocks(outcome, 'omega turn', seed, terrain) for seed in range(PILES)]
+    return [_on_rocks(outcome, OMEGA, seed, terrain) for seed in range(PILES)]
 
 
 def _trials(outcome: Outcome) -> list[ObstacleTrial]:
@@ -120,8 +120,8 @@ def _soil_rows(outcome: Outcome) -> list[Row]:
     for relief in OTHER_RELIEFS_BL if outcome.tried else ():
         found = [outcome.tried[trial]['angle_deg'] for trial in _filled(outcome, relief)]
         spread = spread_of(found, outcome.plan.seed)
-        params = {**params_of(_task(outcome.plan, 'omega turn')), 'rock_relief_bl': relief}
-        case = f'omega turn, rocks, soil {relief:g} BL below their tops'
+        params = {**params_of(_task(outcome.plan, OMEGA)), 'rock_relief_bl': relief}
+        case = f'{OMEGA}, rocks, soil {relief:g} BL below their tops'
         for quantity, value in (('angle', spread.mean), ('angle_std', spread.deviation)):
             rows.append(Row(case, params, quantity, 'deg', None, None, None, value))
     return rows
@@ -135,7 +135,7 @@ def _paper_grounds(gait: str) -> tuple[str, ...]:
 def _numbers(outcome: Outcome, gait: str) -> dict[tuple[str, str, str], float | None]:
     hard, results = _tried(outcome, gait)
     spread = spread_of([result['angle_deg'] for result in results], outcome.plan.seed)
-    _, open_loop = _tried(outcome, 'omega turn')
+    _, open_loop = _tried(outcome, OMEGA)
     gains = [b['angle_deg'] - a['angle_deg'] for a, b in zip(open_loop, results)]
     gain = spread_of(gains, outcome.plan.seed) if gait == COMPLIANT else None
     rolled = np.mean([result['least_upright'] < ROLLED for result in results])
@@ -174,7 +174,7 @@ def _by_gait(outcome: Outcome) -> Iterator[tuple[str, list[ObstacleTrial]]]:
     for gait in GAITS:
         yield gait, [_hard(outcome, gait), *_pile(outcome, gait)]
     for relief in OTHER_RELIEFS_BL:
-        yield 'omega turn', _filled(outcome, relief)
+        yield OMEGA, _filled(outcome, relief)
 
 
 def _ground(trial: ObstacleTrial) -> Result:
@@ -212,7 +212,7 @@ def _draw(outcome: Outcome, out: Path) -> None:
 
 def _typical_seed(outcome: Outcome) -> int:
     """Pile on which the omega turn comes nearest to its mean over all piles."""
-    _, results = _tried(outcome, 'omega turn')
+    _, results = _tried(outcome, OMEGA)
     found = np.array([result['angle_deg'] for result in results])
     return int(np.abs(found - found.mean()).argmin())
 

@@ -114,7 +114,7 @@ class DesignTask:
             'clearance': design.clearance,
             'evaluations': design.evaluations,
             'starts': design.starts,
-            'tops': [round(top, 4) for top in design.tops],
+            'tops': list(design.tops),
             'reason': design.reason,
         }
 

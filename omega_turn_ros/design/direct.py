@@ -46,7 +46,7 @@ def design_direct(
     Args:
         problem: the body, its ground and its limits.
         seed: equal seeds give equal gaits.
-        starts: how many searches to begin with.
+        starts: how many searches to begin with, at most.
         area_weight: turn given up for a smaller swept area, least over the start of the cycle
             [rad per BL^2].
         per_second: maximise `turning_speed` instead of the turn per cycle.
@@ -61,6 +61,9 @@ def design_direct(
 
     if area_weight and per_second:
         raise BadInputError('area_weight', area_weight, '0 where turning speed is maximised')
+    if area_weight and problem.samples % AREA_STRIDE:
+        expected = f'a multiple of {AREA_STRIDE}, for a weight on area'
+        raise BadInputError('samples', problem.samples, expected)
     value = partial(_value, area_weight=area_weight, per_second=per_second)
     rng = np.random.default_rng(seed)
     candidates = rng.uniform(-1.0, 1.0, size=(SCREENED * starts, 6))
@@ -69,7 +72,7 @@ def design_direct(
     fine = cost_of(replace(problem, samples=FINE), coefficients_of, value, FINE_STRIDE)
     likeness = likeness_of(problem, coefficients_of)
     found = search(coarse, fine, likeness, candidates, starts, seed)
-    return finish(problem, gait_of(problem, found.best), found, starts, 'direct')
+    return finish(problem, gait_of(problem, found.best), found, 'direct')
 
 
 def _value(problem: DesignProblem, paths: Array, area_weight: float, per_second: bool) -> Array:

@@ -40,7 +40,7 @@ def design_fourier(
     Args:
         problem: the body, its ground and its limits.
         seed: equal seeds give equal gaits.
-        starts: how many searches to begin with.
+        starts: how many searches to begin with, at most.
         harmonics: of each of f_1, f_2 and f_3.
 
     Raises:
@@ -58,7 +58,7 @@ def design_fourier(
     fine = cost_of(replace(problem, samples=FINE), coefficients_of, _value, FINE_STRIDE)
     likeness = likeness_of(problem, coefficients_of)
     found = search(coarse, fine, likeness, candidates, starts, seed)
-    return finish(problem, gait_of(problem, found.best), found, starts, 'fourier')
+    return finish(problem, gait_of(problem, found.best), found, 'fourier')
 
 
 def _value(problem: DesignProblem, paths: Array) -> Array:

@@ -13,7 +13,6 @@ import numpy as np
 
 from omega_turn_ros.design.plane_search import propose
 from omega_turn_ros.design.problem import Design, DesignProblem
-from omega_turn_ros.design.search import shares_of_best
 from omega_turn_ros.design.sub_shape import PLANES, SubShape
 from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.gaits.two_wave_gait import TwoWaveGait
@@ -45,7 +44,7 @@ def design_hierarchical(problem: DesignProblem, seed: int = 0, starts: int = 8) 
         raise BadInputError('starts', starts, 'at least 1')
     climbs = [_Climb(problem, np.random.default_rng((seed, k))) for k in range(starts)]
     best = max(climbs, key=lambda climb: climb.angle)
-    tops = shares_of_best([climb.angle for climb in climbs])
+    tops = tuple(sorted((climb.angle for climb in climbs), reverse=True))
     best.climb(NEAR, NEAR_GAIN)
     if not best.angle > 0.0:
         raise BadInputError('problem', problem, 'a body that can turn within its limits')

@@ -100,9 +100,7 @@ def turning_speed(angle: ArrayLike, path: Array) -> Array:
     return result
 
 
-def finish(
-    problem: DesignProblem, gait: WaveGait, found: SearchResult, starts: int, method: str
-) -> Design:
+def finish(problem: DesignProblem, gait: WaveGait, found: SearchResult, method: str) -> Design:
     """Enforce the limits on a fine grid, turn counter-clockwise, and account for the search.
 
     Raises:
@@ -119,7 +117,7 @@ def finish(
         problem.clearance(path),
         method,
         found.evaluations,
-        starts,
+        found.starts,
         found.tops,
         found.reason,
     )

@@ -142,9 +142,9 @@ class Design:
         clearance: smallest gap of the body to itself [m].
         method: 'direct', 'fourier' or 'hierarchical'.
         evaluations: cycles integrated on the way, all starts.
-        starts: how many starting points.
-        tops: where the searches from them ended, over the best of them, best first; of the
-            direct methods only those of the last round.
+        starts: how many searches began.
+        tops: what was maximised, as the searches ended, best first: the angle [rad] of every
+            start; of the direct methods, the value of the runs of the last round.
         reason: why the best start stopped.
     """
 

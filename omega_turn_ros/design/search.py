@@ -7,7 +7,7 @@ it is seen which basins are worth more costs.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -33,13 +33,15 @@ class SearchResult:
     Attributes:
         best: parameters, shape (D,).
         cost: of them.
-        evaluations: of either cost, all starts.
-        tops: what the runs of the last round reached, over the best of them, best first.
+        starts: how many runs began: fewer than asked where the candidates are too much alike.
+        evaluations: of either cost, all runs.
+        tops: minus the cost that the runs of the last round reached, best first.
         reason: why the last search stopped.
     """
 
     best: Array
     cost: float
+    starts: int
     evaluations: int
     tops: tuple[float, ...]
     reason: str
@@ -55,38 +57,30 @@ def search(
         fine: the cost that counts.
         likeness: parameter vectors are as alike as these unit vectors are parallel, either way.
         candidates: parameter vectors to choose the starts from, shape (C, D), C >= starts.
-        starts: how many runs to begin with.
-        seed: of CMA-ES; equal seeds give equal results.
+        starts: how many runs to begin with, at most.
+        seed: of CMA-ES; equal seeds give equal results, whatever else draws random numbers.
     """
     order = np.argsort(coarse(candidates), kind='stable')
     chosen = _different(likeness(candidates[order]), starts, ALIKE_STARTS)
     runs = [
-        _strategy(candidates[order[i]], STEP, TOLERANCE, seed * 1000 + k)
-        for k, i in enumerate(chosen)
+        _strategy(candidates[order[i]], STEP, TOLERANCE, (seed, k)) for k, i in enumerate(chosen)
     ]
     evaluations = len(candidates)
     for costs, kept in ROUNDS:
         evaluations += sum(_advance(run, coarse, costs * candidates.shape[1]) for run in runs)
         runs.sort(key=lambda run: float(run.result.fbest))
-        tops = np.array([run.result.xbest for run in runs])
-        last = [-float(run.result.fbest) for run in runs]
-        runs = [runs[i] for i in _different(likeness(tops), kept, ALIKE_TOPS)]
+        tops = tuple(-float(run.result.fbest) for run in runs)
+        ends = np.array([run.result.xbest for run in runs])
+        runs = [runs[i] for i in _different(likeness(ends), kept, ALIKE_TOPS)]
     winner = runs[0].result
     # The winner's spread tells how far the finer search has to look in each direction.
     spread = np.maximum(3.0 * winner.stds, 3e-3)
-    finest = _strategy(winner.xbest, 1.0, FINE_TOLERANCE, seed * 1000 + 999, spread)
+    finest = _strategy(winner.xbest, 1.0, FINE_TOLERANCE, (seed, len(chosen)), spread)
     evaluations += _advance(finest, fine, FINE_EVALUATIONS * candidates.shape[1])
     found = finest.result
     reason = ', '.join(finest.stop()) or f'{found.evaluations} costs'
-    return SearchResult(
-        np.array(found.xbest), float(found.fbest), evaluations, shares_of_best(last), reason
-    )
-
-
-def shares_of_best(values: list[float]) -> tuple[float, ...]:
-    """Values over the largest of them, largest first; 0 where none is > 0."""
-    ordered = sorted(values, reverse=True)
-    return tuple(v / ordered[0] if ordered[0] > 0.0 else 0.0 for v in ordered)
+    best, cost = np.array(found.xbest), float(found.fbest)
+    return SearchResult(best, cost, len(chosen), evaluations, tops, reason)
 
 
 def _different(directions: Array, count: int, alike: float) -> list[int]:
@@ -101,10 +95,13 @@ def _different(directions: Array, count: int, alike: float) -> list[int]:
 
 
 def _strategy(
-    start: Array, step: float, tolerance: float, seed: int, spread: Array | None = None
+    start: Array, step: float, tolerance: float, seed: Sequence[int], spread: Array | None = None
 ) -> cma.CMAEvolutionStrategy:
+    rng = np.random.default_rng(seed)
     options: dict[str, Any] = {
-        'seed': seed + 1,
+        # Numbers of its own: left alone, all runs draw from numpy's global state.
+        'randn': lambda *size: rng.standard_normal(size),
+        'seed': np.nan,
         'verbose': -9,
         'tolfun': tolerance,
         'tolflatfitness': 10,

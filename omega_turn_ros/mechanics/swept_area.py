@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import ConvexHull
 
+from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.mechanics.chain import PlanarChain
 
 Array = NDArray[np.float64]
@@ -39,7 +40,7 @@ def swept_area(chain: PlanarChain, width: float, path: ArrayLike, poses: ArrayLi
         path: yaw joint angles [rad], shape (T, N).
         poses: of the mean body frame, shape (T, 3).
     """
-    return _hull(body_corners(chain, width, path, poses)) / float(chain.lengths.sum()) ** 2
+    return hull_area(body_corners(chain, width, path, poses)) / float(chain.lengths.sum()) ** 2
 
 
 def swept_area_by_start(
@@ -58,7 +59,12 @@ def swept_area_by_start(
 
     Returns:
         Areas in body lengths squared, shape (starts,).
+
+    Raises:
+        BadInputError: no start.
     """
+    if starts < 1:
+        raise BadInputError('starts', starts, 'at least 1')
     axis, pose = chain.outline(path, poses), np.asarray(poses, float)
     turn = pose[-1, 2] - pose[0, 2]
     c, s = np.cos(turn), np.sin(turn)
@@ -66,11 +72,11 @@ def swept_area_by_start(
     two = np.concatenate([axis, moved[1:]])
     steps = len(axis) - 1
     begins = np.arange(starts) * steps // starts
-    hulls = np.array([_hull(two[begin : begin + steps + 1]) for begin in begins])
+    hulls = np.array([hull_area(two[begin : begin + steps + 1]) for begin in begins])
     areas: Array = hulls / float(chain.lengths.sum()) ** 2
     return areas
 
 
-def _hull(points: Array) -> float:
+def hull_area(points: Array) -> float:
     """Area of the convex hull [m^2] of points, shape (..., 2)."""
     return float(ConvexHull(points.reshape(-1, 2)).volume)

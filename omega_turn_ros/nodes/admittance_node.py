@@ -34,7 +34,8 @@ from omega_turn_ros.robot import Robot, load_robot
 Array = NDArray[np.float64]
 
 WAVES = ('forward', 'turning')
-TARED = 50  # readings at rest whose mean effort a tare takes for zero
+TARED = 50  # readings at rest in a row whose mean effort a tare takes for zero
+AT_REST = 0.05  # [rad/s] joints slower than this rest, for all that noise says
 WATCHDOG_PERIOD = 0.05  # [s] between offsets published while efforts are missing
 
 ADMITTANCE_PARAMETERS = (
@@ -129,6 +130,7 @@ class AdmittanceNode(Node):
         self._answered = -1
         self._relaxing = False
         self._at_rest: deque[Array] = deque(maxlen=TARED)
+        self._jumps = 0
         lock_step = self._settings['lock_step']
         qos = STATE if lock_step else STATE_INPUT
         self._lock_step = lock_step
@@ -196,6 +198,8 @@ class AdmittanceNode(Node):
             self._health.refuse('joint_states', str(error))
             return
         self._answered = stamp
+        if not self._efforts_seen.fresh:
+            self._at_rest.clear()
         self._efforts_seen.mark()
         if self._relaxing:
             self._relaxing = False
@@ -204,11 +208,17 @@ class AdmittanceNode(Node):
         phases = self._phases if self._playing and self._phases_seen.fresh else None
         if phases is not None:
             self._state = self._controller.step(self._state, angles, rates, efforts, phases, dt)
-            self._at_rest.clear()
         else:
             self._state = self._controller.relax(self._state, dt)
-            self._at_rest.append(efforts)
+        self._note_rest(efforts, phases is None and np.abs(rates).max() < AT_REST)
         self._publish(message.header.stamp)
+
+    def _note_rest(self, efforts: Array, resting: bool) -> None:
+        if resting and self._time.jumps == self._jumps:
+            self._at_rest.append(efforts)
+        else:
+            self._at_rest.clear()
+        self._jumps = self._time.jumps
 
     def _publish(self, stamp: Time) -> None:
         law = self._state.admittance
@@ -217,15 +227,15 @@ class AdmittanceNode(Node):
         )
 
     def _on_tare(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        readings = len(self._at_rest)
-        response.success = readings == TARED and self._efforts_seen.fresh
+        readings = len(self._at_rest) if self._efforts_seen.fresh else 0
+        response.success = readings == TARED
         if response.success:
             self._state = self._controller.tare(self._state, np.array(self._at_rest))
             largest = float(np.abs(self._state.zero).max())
             response.message = f'efforts at rest count as 0 now: {largest:.3g} N m at most'
             self.get_logger().info(response.message)
         else:
-            response.message = f'{TARED} readings of efforts at rest are needed, not {readings}'
+            response.message = f'{TARED} efforts at rest in a row are needed, not {readings}'
         return response
 
     def _on_watchdog(self) -> None:

@@ -57,7 +57,8 @@ def test_more_starts_turn_no_less(design: Design) -> None:
     one = design_hierarchical(PROBLEM, seed=3, starts=1)
     assert one.angle <= design.angle * (1.0 + 1e-3)
     assert design.starts == len(design.tops) == 3
-    assert design.tops == tuple(sorted(design.tops, reverse=True)) and design.tops[0] == 1.0
+    assert design.tops == tuple(sorted(design.tops, reverse=True))
+    assert design.tops[0] == pytest.approx(design.angle, rel=0.1)
     assert design.reason
 
 

@@ -70,5 +70,5 @@ def test_designed_gait_turns_at_least_as_far_as_an_independent_design(name: str)
     entry = load_gait(name)
     path = entry.gait.angles(np.linspace(0.0, 2.0 * np.pi, 721), ROBOT.n_yaw)
     slow = heading_along(CHAIN, path)[-1]
-    assert math.degrees(slow) >= FLOORS[name] - 0.1
+    assert math.degrees(slow) >= FLOORS[name] - 0.2  # theirs may touch itself by millimetres
     assert entry.calibration.largest_angle == pytest.approx(slow, abs=0.1 * ONE_DEGREE)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.mechanics.chain import PlanarChain
-from omega_turn_ros.mechanics.swept_area import body_corners, swept_area
+from omega_turn_ros.mechanics.swept_area import body_corners, swept_area, swept_area_by_start
 
 CHAIN = PlanarChain([0.5, 0.3, 0.2])  # one body length is 1 m
 STRAIGHT = np.zeros(2)
@@ -60,3 +61,22 @@ def test_corners_are_those_of_links_of_the_given_length_and_width() -> None:
     np.testing.assert_allclose(sides[..., 1], np.broadcast_to(CHAIN.lengths, (6, 3)))
     joint = 0.5 * (corners[:, :-1, 2] + corners[:, :-1, 3])
     np.testing.assert_allclose(joint, 0.5 * (corners[:, 1:, 0] + corners[:, 1:, 1]), atol=1e-12)
+
+
+def test_area_of_a_cycle_cut_elsewhere_is_that_of_the_motion_cut_there() -> None:
+    """Two cycles played through: each start's area is the plain one of its stretch."""
+    steps, turn = 24, 0.9
+    phase = np.linspace(0.0, 4.0 * np.pi, 2 * steps + 1)
+    path = np.stack([np.sin(phase), 0.5 * np.cos(phase)], axis=-1)
+    swing = 0.3 * np.sin(phase)
+    along = phase / (2.0 * np.pi)
+    # A screw about the origin, so that the second cycle is the first one turned.
+    where = poses(
+        (1.0 + swing) * np.cos(turn * along), (1.0 + swing) * np.sin(turn * along), turn * along
+    )
+    areas = swept_area_by_start(CHAIN, path[: steps + 1], where[: steps + 1], 6)
+    for area, begin in zip(areas, range(0, steps, 4)):
+        stretch = slice(begin, begin + steps + 1)
+        assert area == pytest.approx(swept_area(CHAIN, 0.0, path[stretch], where[stretch]))
+    with pytest.raises(BadInputError, match='starts'):
+        swept_area_by_start(CHAIN, path, where, 0)

@@ -273,16 +273,38 @@ def test_a_live_change_of_the_law_moves_no_offset_at_once(
     compliant.run(0.5)
 
 
-def test_a_tare_takes_the_efforts_at_rest_for_zero(graph: Graph) -> None:
+def test_a_tare_takes_the_mean_effort_at_rest_for_zero(graph: Graph) -> None:
     compliant = Compliant(graph)
     compliant.efforts[PUSHED] = -PUSH  # as a push would, but it is the sensor's bias
     untared = compliant.run(0.5)
     assert abs(untared[0]) > 0.05
-    answer = compliant.user.call('admittance_node/tare', succeeds=False)  # a cycle plays
-    assert '50 readings' in answer.message
     compliant.run(3.0, playing=0.0)
+    noise = [0.3, -0.3]
+    for k in range(50):
+        compliant.efforts[PUSHED] = -PUSH + noise[k % 2]
+        compliant.run(compliant.step, playing=0.0)
     assert compliant.offsets == (0.0, 0.0)
     assert '1.7 N m' in compliant.user.call('admittance_node/tare').message
+    compliant.efforts[PUSHED] = -PUSH
     assert compliant.run(0.5) == (0.0, 0.0)
     compliant.efforts[PUSHED] -= PUSH
     assert compliant.run(0.5) == pytest.approx(untared, rel=0.1)
+
+
+@pytest.mark.parametrize('why', ['a cycle plays', 'it moves', 'the clock jumps'])
+def test_a_robot_that_does_not_rest_is_not_tared(graph: Graph, why: str) -> None:
+    compliant = Compliant(graph)
+    compliant.efforts[PUSHED] = -PUSH
+
+    def moving(message: JointState) -> JointState:
+        message.velocity = [1.0] * ROBOT.n_joints
+        return message
+
+    if why == 'it moves':
+        compliant.spoil['joint_states'] = moving
+    compliant.run(1.5, playing=float(why == 'a cycle plays'))
+    if why == 'the clock jumps':
+        compliant.time += 900 * 10**9
+        compliant.run(10 * compliant.step, playing=0.0)
+    answer = compliant.user.call('admittance_node/tare', succeeds=False)
+    assert '50 efforts at rest' in answer.message

@@ -31,6 +31,10 @@ def test_every_setting_of_the_physics_follows_the_parameter_of_its_name() -> Non
         assert getattr(make_config(values(**{field.name: given})), field.name) == given
 
 
+def test_a_step_of_the_solver_lasts_as_long_as_its_rate_says() -> None:
+    assert make_config(values(physics_rate=400.0)).time_step == pytest.approx(0.0025)
+
+
 def test_a_foot_that_sticks_less_than_it_slides_is_refused() -> None:
     with pytest.raises(BadInputError, match='static_friction'):
         make_config(values(friction=0.6, static_friction=0.5))

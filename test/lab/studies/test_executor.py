@@ -8,7 +8,6 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-import distributed
 import pytest
 from cases import Hopeless, Square, WhoAmI
 
@@ -37,6 +36,7 @@ IN_PROCESS: dict[str, Any] = {
 @pytest.fixture(scope='module')
 def scheduler() -> Iterator[str]:
     """Address of a Dask cluster in this process, reached over TCP as a real one."""
+    distributed = pytest.importorskip('distributed')
     with distributed.LocalCluster(n_workers=1, threads_per_worker=1, **IN_PROCESS) as cluster:
         yield cluster.scheduler_address
 
@@ -119,6 +119,7 @@ def test_no_processes_are_refused(jobs: int) -> None:
 def test_a_missing_scheduler_is_named(
     address: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    pytest.importorskip('distributed')
     monkeypatch.setattr(executor_module, 'CONNECT_TIMEOUT', 1)
     with pytest.raises(BadInputError, match=f'dask: got .{address}'):
         compute(SQUARES, DaskExecutor(address), ResultStore(tmp_path), 'test')
@@ -127,6 +128,7 @@ def test_a_missing_scheduler_is_named(
 def test_a_scheduler_without_workers_is_not_waited_for_forever(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    distributed = pytest.importorskip('distributed')
     monkeypatch.setattr(executor_module, 'WORKER_TIMEOUT', 0.2)
     with (
         distributed.LocalCluster(n_workers=0, **IN_PROCESS) as cluster,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 NAME = 'flat'
-AREA_WEIGHTS = (3.0, 6.0)  # [rad/BL^2]; beyond, standing still is best
+AREA_LIMITS = (0.25, 0.22, 0.19)  # [BL^2]
 LEAST, MOST = 'swept_area_least', 'swept_area_most'
 
 
@@ -39,7 +40,7 @@ def _family(plan: Plan) -> list[DesignTask]:
 
 def _front(plan: Plan) -> list[DesignTask]:
     """Omega turns of ever smaller swept area."""
-    return [plan.design(1.0), *(plan.design(1.0, area_weight=w) for w in AREA_WEIGHTS)]
+    return [plan.design(1.0), *(plan.design(1.0, area_limit=a) for a in AREA_LIMITS)]
 
 
 def _designs(plan: Plan) -> list[DesignTask]:
@@ -62,7 +63,8 @@ def _rows(outcome: Outcome) -> list[Row]:
             case = case_name(task)
             rows.append(row_of(NAME, case, task, reading, 'BL^2', ours, 'swept_area'))
     for task in _front(outcome.plan):
-        case = f'area weight {task.area_weight:g} rad/BL²'
+        limited = task.area_limit < math.inf
+        case = f'omega, area up to {task.area_limit:g} BL²' if limited else 'omega, any area'
         rows.append(row_of(NAME, case, task, 'pareto', 'deg', outcome.angles(task), 'angle'))
         areas = _areas(outcome, task, LEAST)
         rows.append(row_of(NAME, case, task, 'pareto', 'BL^2', areas, 'swept_area'))
@@ -119,7 +121,7 @@ def _draw_front(outcome: Outcome, path: Path) -> None:
             's-',
             color=COLOURS[1],
             ms=3.2,
-            label='$k_t$ = 1, area weighed',
+            label='$k_t$ = 1, area limited',
         )
         played = [(_areas(outcome, task, LEAST)[1], outcome.angles(task)[1]) for task in front]
         if outcome.played:

@@ -61,7 +61,7 @@ class DesignTask:
         theta_max_deg: joint angle limit [deg].
         seed: of the search.
         law: of the ground.
-        area_weight: what a swept body length squared costs [rad]; of the direct method only.
+        area_limit: no larger area is swept [BL^2]; of the direct method only.
         method: of `omega_turn_ros.design.catalogue.METHODS`.
     """
 
@@ -72,7 +72,7 @@ class DesignTask:
     theta_max_deg: float
     seed: int
     law: ForceLaw = field(default_factory=CoulombFriction)
-    area_weight: float = 0.0
+    area_limit: float = math.inf
     method: str = 'direct'
 
     def __str__(self) -> str:
@@ -80,7 +80,7 @@ class DesignTask:
         return (
             f'{self.method} design for {self.robot.name}, k_f {self.k_f:g}, k_t {self.k_t:g}, '
             f'limit {self.theta_max_deg:g} deg, seed {self.seed}, {self.law}, '
-            f'area weight {self.area_weight:g}'
+            f'area up to {self.area_limit:g} BL^2'
         )
 
     @property
@@ -98,7 +98,7 @@ class DesignTask:
         """Return the gait's parameters, its angle per cycle [deg] and its swept areas [BL^2]."""
         problem = self.problem
         if self.method == 'direct':
-            design = design_direct(problem, self.seed, area_weight=self.area_weight)
+            design = design_direct(problem, self.seed, area_limit=self.area_limit)
         else:
             design = METHODS[self.method](problem, self.seed)
         gait = design.gait

@@ -30,7 +30,8 @@ from omega_turn_ros.mechanics.swept_area import swept_area_by_start
 Array = NDArray[np.float64]
 
 SCREENED = 40  # random candidates per start; the best become the starts
-AREA_STARTS, AREA_STRIDE = 4, 2  # of the cycle, the one that sweeps least counts; of its shapes
+EXCESS = 30.0  # [rad per BL^2] what a gait above the area limit loses; no gait gains as much
+AREA_STARTS, AREA_STRIDE = 4, 3  # of the cycle, the one that sweeps least counts; of its shapes
 FINE_STRIDE = 4  # the last search keeps limits on the fine grid, and integrates every so many
 
 
@@ -38,17 +39,16 @@ def design_direct(
     problem: DesignProblem,
     seed: int = 0,
     starts: int = 32,
-    area_weight: float = 0.0,
+    area_limit: float = math.inf,
     per_second: bool = False,
 ) -> Design:
-    """Find the two-wave gait of largest turn per cycle, or one that trades turn for more.
+    """Find the two-wave gait of largest turn per cycle, or of those that sweep little.
 
     Args:
         problem: the body, its ground and its limits.
         seed: equal seeds give equal gaits.
         starts: how many searches to begin with, at most.
-        area_weight: turn given up for a smaller swept area, least over the start of the cycle
-            [rad per BL^2].
+        area_limit: no larger area is swept than this, least over the start of the cycle [BL^2].
         per_second: maximise `turning_speed` instead of the turn per cycle.
 
     Raises:
@@ -56,15 +56,16 @@ def design_direct(
     """
     if starts < 1:
         raise BadInputError('starts', starts, 'at least 1')
-    if not math.isfinite(area_weight) or area_weight < 0.0:
-        raise BadInputError('area_weight', area_weight, 'a finite weight >= 0 [rad per BL^2]')
+    if not area_limit > 0.0:
+        raise BadInputError('area_limit', area_limit, 'an area > 0 [BL^2]')
 
-    if area_weight and per_second:
-        raise BadInputError('area_weight', area_weight, '0 where turning speed is maximised')
-    if area_weight and problem.samples % AREA_STRIDE:
-        expected = f'a multiple of {AREA_STRIDE}, for a weight on area'
+    limited = area_limit < math.inf
+    if limited and per_second:
+        raise BadInputError('area_limit', area_limit, 'none where turning speed is maximised')
+    if limited and problem.samples % AREA_STRIDE:
+        expected = f'a multiple of {AREA_STRIDE}, for a limit on area'
         raise BadInputError('samples', problem.samples, expected)
-    value = partial(_value, area_weight=area_weight, per_second=per_second)
+    value = partial(_value, area_limit=area_limit, per_second=per_second)
     rng = np.random.default_rng(seed)
     candidates = rng.uniform(-1.0, 1.0, size=(SCREENED * starts, 6))
     candidates[:, 3:] = rng.uniform(-np.pi, np.pi, (SCREENED * starts, 3))
@@ -75,18 +76,18 @@ def design_direct(
     return finish(problem, gait_of(problem, found.best), found, 'direct')
 
 
-def _value(problem: DesignProblem, paths: Array, area_weight: float, per_second: bool) -> Array:
+def _value(problem: DesignProblem, paths: Array, area_limit: float, per_second: bool) -> Array:
     angles = turns(problem, paths)
     if per_second:
         return turning_speed(angles, paths)
-    if area_weight == 0.0:
+    if area_limit == math.inf:
         return angles
     few = paths[:, ::AREA_STRIDE]
     poses = [problem.motion.pose_along(path)[::AREA_STRIDE] for path in paths]
     least = [
         swept_area_by_start(problem.chain, *pair, AREA_STARTS).min() for pair in zip(few, poses)
     ]
-    return angles - area_weight * np.array(least)
+    return angles - EXCESS * np.maximum(np.array(least) - area_limit, 0.0)
 
 
 def coefficients_of(x: Array) -> Coefficients:

@@ -64,15 +64,16 @@ def test_equal_seeds_give_equal_gaits() -> None:
     assert first.reason
 
 
-def test_a_weight_on_area_gives_a_smaller_area_for_less_turn(design: Design) -> None:
-    thrifty = design_direct(PROBLEM, seed=3, starts=4, area_weight=4.0)
+def test_a_limit_on_area_is_kept_and_costs_turn(design: Design) -> None:
+    limit = 0.2
+    thrifty = design_direct(PROBLEM, seed=3, starts=8, area_limit=limit)
     areas = []
     for gait in (design.gait, thrifty.gait):
         path = PROBLEM.path(gait, 360)
         poses = PROBLEM.motion.pose_along(path)
         areas.append(swept_area_by_start(CHAIN, path, poses, 24).min())
-    assert areas[1] < areas[0]
-    assert thrifty.angle < design.angle
+    assert areas[1] <= 1.03 * limit < areas[0]  # the search looks at fewer shapes and starts
+    assert 0.2 * design.angle < thrifty.angle < design.angle
 
 
 def test_fourier_gaits_turn_faster_at_equal_peak_joint_speed_than_the_paper_s_family() -> None:

@@ -24,13 +24,13 @@ OTHERS = ('height', 'beyond', 'pegboard', 'rocks', 'legged')
 PAPER = [name for name in available() if name not in OTHERS]
 
 
-def unsearched(problem: DesignProblem, seed: int = 0, area_weight: float = 0.0) -> Design:
+def unsearched(problem: DesignProblem, seed: int = 0, area_limit: float = math.inf) -> Design:
     """A shipped gait of the nearest k_t, fitted to the problem."""
     shipped = [load_gait(name).gait for name in ('offset', 'omega', 'geometric')]
     nearest = min(shipped, key=lambda gait: abs(gait.k_t - problem.k_t))
     assert isinstance(nearest, TwoWaveGait)
     shifted = replace(
-        nearest, k_f=problem.k_f, k_t=problem.k_t, psi=nearest.psi + 0.05 * area_weight + seed
+        nearest, k_f=problem.k_f, k_t=problem.k_t, psi=nearest.psi + 0.1 / area_limit + seed
     )
     gait = problem.fitted(shifted)
     angle = problem.turn(problem.path(gait))

@@ -17,6 +17,7 @@ from conftest import unsearched
 from omega_turn_lab import cli
 from omega_turn_lab.studies import NAMES, run
 from omega_turn_lab.studies import tasks as tasks_module
+from omega_turn_lab.studies.flat import AREA_LIMITS
 from omega_turn_ros.design.problem import Design, DesignProblem
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -27,9 +28,9 @@ def designed(monkeypatch: pytest.MonkeyPatch) -> list[DesignProblem]:
     """Problems that were designed for, in this process and without a search."""
     problems = []
 
-    def design(problem: DesignProblem, seed: int, area_weight: float) -> Design:
+    def design(problem: DesignProblem, seed: int, area_limit: float) -> Design:
         problems.append(problem)
-        return unsearched(problem, seed, area_weight)
+        return unsearched(problem, seed, area_limit)
 
     monkeypatch.setattr(tasks_module, 'design_direct', design)
     return problems
@@ -71,8 +72,8 @@ def test_studies_share_the_cases_they_have_in_common(
         (problem.chain.n_joints, problem.k_f, problem.k_t, problem.theta_max)
         for problem in designed
     ]
-    weighted = 2  # the front has more than one gait of the omega turn's problem
-    assert len(asked) == len(set(asked)) + weighted == 3 * 7 + weighted
+    limited = len(AREA_LIMITS)  # gaits of the omega turn's problem beside its best
+    assert len(asked) == len(set(asked)) + limited == 3 * 7 + limited
     assert {path.stem for path in tmp_path.glob('*.json')} == {'flat', 'evolution', 'joints'}
 
 

@@ -13,7 +13,7 @@ from PIL.PngImagePlugin import PngImageFile
 
 from omega_turn_lab.studies import published
 from omega_turn_lab.studies.areas import area_readings
-from omega_turn_lab.studies.flat import AREA_WEIGHTS
+from omega_turn_lab.studies.flat import AREA_LIMITS
 from omega_turn_lab.studies.rows import Row, print_table, write_json
 from omega_turn_lab.studies.run import load_study
 from omega_turn_lab.studies.study import Outcome
@@ -178,7 +178,7 @@ def test_stronger_grains_change_what_motors_do_and_not_what_the_balance_says(
 
 def test_the_front_has_a_point_of_angle_and_area_for_each_weight(outcome: Outcome) -> None:
     points = rows_of('flat', outcome, 'pareto')
-    assert [row.unit for row in points] == ['deg', 'BL^2'] * (1 + len(AREA_WEIGHTS))
+    assert [row.unit for row in points] == ['deg', 'BL^2'] * (1 + len(AREA_LIMITS))
     (angle,) = rows_of('flat', outcome, 'angle', k_t=1.0)
     assert points[0].quasi_static == angle.quasi_static
     assert len({row.quasi_static for row in points}) == len(points)

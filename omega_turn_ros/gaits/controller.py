@@ -243,7 +243,9 @@ class GaitController:
         predicted = table.heading_at(state.scale, turned) - table.heading_at(
             state.scale, state.turned
         )
-        offsets = (gate * state.offsets[0], gate * state.offsets[1])
+        # A small cycle, such as a correction, must not be outgrown by what its waves yield.
+        share = gate * min(abs(state.scale), 1.0)
+        offsets = (share * state.offsets[0], share * state.offsets[1])
         target = self._played.at(table.start_phase + turned, state.scale, offsets)
         changes = {'turned': turned, 'phase_rate': rate, 'gate': gate}
         return changes, target, predicted * state.ratio

@@ -404,6 +404,18 @@ def test_offsets_enter_gently_stay_bounded_and_leave_at_rest(make_rig: MakeRig) 
     assert np.diff(difference, axis=0).max() <= allowed + yielding.dt * 0.4
 
 
+@pytest.mark.parametrize('angle', [0.02, 0.2])
+def test_a_small_cycle_is_not_outgrown_by_its_offsets(make_rig: MakeRig, angle: float) -> None:
+    nominal, yielding = make_rig(), make_rig(offset_limit=0.5, offset_rate=10.0)
+    for rig, offsets in ((nominal, (0.0, 0.0)), (yielding, (0.5, 0.5))):
+        rig.ask(angle)
+        rig.finish(offsets=offsets)
+    scale = nominal.state.scale
+    assert 0.0 < scale < 0.8
+    difference = np.abs(yielding.commands() - nominal.commands())
+    assert 0.2 * scale < difference.max() <= 2 * 0.5 * scale + 1e-12
+
+
 def test_offsets_wear_off_at_their_own_rate(make_rig: MakeRig) -> None:
     rig = make_rig(offset_limit=0.2, offset_rate=0.5)
     rig.step(8, offsets=(0.2, -0.2))  # 0.5 rad/s * 0.4 s

@@ -44,6 +44,9 @@ class LocalExecutor:
         """See `Executor.results`."""
         from joblib import Parallel, delayed, parallel_config
 
+        # An interrupt ends the workers while their helper tidies up after them, too; what one
+        # finds gone, because the other was faster, is no news to anybody.
+        os.environ.setdefault('PYTHONWARNINGS', 'ignore:resource_tracker')
         with parallel_config(backend='loky', inner_max_num_threads=1):
             pool = Parallel(self.jobs, batch_size=1, return_as='generator_unordered')
             home = os.getpid()

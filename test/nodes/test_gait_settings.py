@@ -296,8 +296,8 @@ def test_moves_keep_the_step_limit_and_arrive_all_the_same(graph: Graph) -> None
 
 def test_the_joint_limit_holds_where_offsets_would_bend_over_it(graph: Graph) -> None:
     turner = Turner(graph, use_compliance=True)
-    turner.robot.offsets = (0.5, -0.5)
-    turner.start_turn(1.5)
+    turner.robot.offsets = (0.5, 0.5)
+    turner.start_turn(3.2)  # two cycles as large as can be
     turner.wait_for_end()
     assert np.abs(turner.watch.positions).max() == pytest.approx(ROBOT.position_limit)
     assert int(turner.user.fact('gait_node', 'commands limited')) > 5

@@ -26,7 +26,7 @@ from omega_turn_lab.live import NodeError, Observer, Stack, wait_until
 from omega_turn_lab.pictures import draw_turn
 from omega_turn_lab.recording import BagRecorder
 from omega_turn_lab.run_record import RunRecord
-from omega_turn_lab.uneven import pitch_effort_on
+from omega_turn_lab.uneven import feedback_on, pitch_effort_on
 from omega_turn_ros import __version__
 from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.gaits.library import load_gait
@@ -181,6 +181,7 @@ def _play(stack: Stack, options: DemoOptions, commanded: float) -> Outcome:
         heading_feedback=options.heading_feedback,
         use_compliance=options.compliance,
         lock_step=True,
+        **feedback_on(options.ground()),
     )
     if options.compliance:
         stack.add(

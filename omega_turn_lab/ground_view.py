@@ -78,16 +78,17 @@ def view_ground(terrain: TerrainConfig, robot: Robot, seed: int) -> GroundView:
 
 
 def _rock_outlines(terrain: TerrainConfig, robot: Robot, seed: int) -> tuple[Array, ...]:
-    """Convex hulls of the rocks seen from above [m]."""
+    """Convex hulls of the rocks seen from above [m], lowest first."""
     from scipy.spatial import ConvexHull
     from scipy.spatial.transform import Rotation
 
     from omega_turn_sim_bridge.rocks import settled_pile
 
     size, extent = (x * robot.length for x in (terrain.rock_size_bl, terrain.extent_bl))
-    pile = settled_pile(size, extent, seed)
-    outlines = []
-    for corners, place, turn in zip(pile.corners, pile.positions, pile.orientations):
-        seen = (Rotation.from_quat(turn).apply(corners) + place)[:, :2]
-        outlines.append(seen[ConvexHull(seen).vertices])
-    return tuple(outlines)
+    pile = settled_pile(size, terrain.rock_fill, extent, seed)
+    lying = [
+        Rotation.from_quat(turn).apply(corners) + place
+        for corners, place, turn in zip(pile.corners, pile.positions, pile.orientations)
+    ]
+    lying.sort(key=lambda corners: float(corners[:, 2].max()))
+    return tuple(c[ConvexHull(c[:, :2]).vertices, :2] for c in lying)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -29,7 +31,6 @@ class TrialLog:
     Attributes:
         count: readings taken in.
         depth: of the deepest contact seen [m], by whoever looks.
-        uprightness: least seen, by whoever looks.
     """
 
     def __init__(self, trial: ObstacleTrial) -> None:
@@ -39,7 +40,7 @@ class TrialLog:
         self._kept: list[Observation] = []
         self.count = self._cycles = 0
         self.depth = 0.0
-        self.uprightness = 1.0
+        self._uprightness = 1.0
         self._effort = 0.0
         self._offset = np.zeros(2)
         self._broken = 0
@@ -67,6 +68,7 @@ class TrialLog:
             self._kept.append(seen)
         self.count += 1
         self._last = seen
+        self._uprightness = min(self._uprightness, math.cos(seen.roll))
         self._effort = max(self._effort, float(np.abs(seen.efforts).max()))
         if state is not None and self._trial.compliance is not None:
             self._balance(state, self._trial.compliance)
@@ -115,7 +117,7 @@ class TrialLog:
             'largest_offsets': self._offset.round(6).tolist(),
             'limits_broken': self._broken,
             'deepest_contact': self.depth,
-            'least_upright': self.uprightness,
+            'least_upright': self._uprightness,
             'energy': {
                 'work': self._work,
                 'peak': self._peak_energy,

@@ -7,6 +7,7 @@ offsets, the robot gets its command.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -47,7 +48,7 @@ READING = 0.01  # [s] between two commands
 STEP_LIMIT = 0.1  # [rad] between two commands, as the gait node's default
 WAIT = 1.0  # [s] at rest before and after the turn
 LONGEST = 3.0  # times the time the cycles take, after which the turn must have ended
-DEPTH_EVERY = 5  # readings between two looks at contacts and tilt
+DEPTH_EVERY = 5  # readings between two looks at contacts
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,7 +119,7 @@ class ObstacleTrial:
             `angle_deg` per cycle (mean), `cycle_angles_deg`, `total_deg`; `largest_effort` [N m];
             `largest_offsets` of (forward, turning) wave [rad]; `limits_broken`, commands and
             offsets outside their limits; `deepest_contact`, how far the body presses into
-            obstacles [m]; `least_upright`, see `Simulation.uprightness`; `energy`, see
+            obstacles [m]; `least_upright`, least cosine of the body's roll; `energy`, see
             `TrialLog`; and the motion: `time` [s], `poses` x [m], y [m], heading [rad],
             `yaw_angles` [rad].
         """
@@ -138,7 +139,6 @@ class ObstacleTrial:
                 log.take(seen, output, state, cycles)
                 if log.count % DEPTH_EVERY == 0:
                     log.depth = max(log.depth, simulation.obstacle_depth())
-                    log.uprightness = min(log.uprightness, simulation.uprightness())
         return log.result()
 
 
@@ -209,7 +209,7 @@ def _readings(
             else:
                 yielding = law.relax(yielding, READING)
         offsets = (0.0, 0.0) if yielding is None else yielding.admittance.offset
-        inputs = Inputs(seen.positions, True, None, offsets)
+        inputs = Inputs(seen.positions, True, None, offsets, upright=math.cos(seen.roll))
         state, output = gait.step(state, inputs, READING)
         yield seen, output, yielding, state.cycles
         if output is not None:

@@ -1,6 +1,8 @@
-"""Heading of the mean body axis of a body that does not lie level."""
+"""Orientation of the mean body frame, also of a body that does not lie level."""
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,22 +10,50 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 
-def tilted_heading(turns: Array, bends: Array, weights: Array) -> float:
-    """Heading whose mean body axis agrees best with the axes of all bodies (own derivation).
+def projected_heading(turns: Array, weights: Array) -> float:
+    """Mean direction of the bodies as seen from above (own derivation).
 
-    Each body's axis, seen from above and turned back by its yaw bend, is a vote for the heading; a
-    body that stands on end votes next to nothing. On level ground all votes are the same.
+    Directions are counted on from body to body, so the mean has no branch cut within the robot,
+    and says the same whichever side is up. The more a body stands on end, the less it counts. On
+    level ground this is the mean body axis.
 
     Args:
-        turns: orientations of the bodies in the world, quaternions x, y, z, w, shape (B, 4).
-        bends: of the bodies by yaw joints, from the mean body axis [rad], shape (B,).
+        turns: orientations of the bodies in the world, head to tail, quaternions x, y, z, w,
+            shape (B, 4).
         weights: of the bodies, shape (B,).
 
     Returns:
-        Heading [rad], -pi..pi.
+        Heading [rad], on any branch.
     """
     x, y, z, w = turns.T
     axes = 1.0 - 2.0 * (y * y + z * z) + 2j * (x * y + w * z)
-    # Upside down the yaw joints turn the other way, seen from above.
-    up = np.copysign(1.0, weights @ (1.0 - 2.0 * (x * x + y * y)))
-    return float(np.angle((weights * axes) @ np.exp(-1j * up * bends)))
+    seen = np.abs(axes)
+    directions = np.angle(axes)
+    before = directions[seen.argmax()]
+    for i, share in enumerate(seen):
+        step = math.remainder(directions[i] - before, math.tau)
+        directions[i] = before + step
+        before += share * step  # what a body on end says of its own direction is chance
+    return float(np.average(directions, weights=weights * seen))
+
+
+def mean_roll(turns: Array, weights: Array) -> float:
+    """Roll that agrees best with the rolls of all bodies about their own axes (own derivation).
+
+    Args:
+        turns: as for `projected_heading`.
+        weights: of the bodies, shape (B,).
+
+    Returns:
+        Roll [rad], -pi..pi; 0 lying as it was put, +-pi upside down.
+    """
+    x, y, z, w = turns.T
+    left, up = 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)
+    return math.atan2(float(weights @ left), float(weights @ up))
+
+
+def orientation_of(heading: float, roll: float) -> tuple[float, float, float, float]:
+    """Quaternion x, y, z, w of a heading and a roll about it [rad]."""
+    c, s = math.cos(0.5 * heading), math.sin(0.5 * heading)
+    cr, sr = math.cos(0.5 * roll), math.sin(0.5 * roll)
+    return c * sr, s * sr, s * cr, c * cr

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -23,6 +22,7 @@ from omega_turn_ros.nodes.qos import COMMAND, STATE
 from omega_turn_ros.nodes.runner import run_node
 from omega_turn_ros.nodes.time import nanoseconds_of, stamp_of
 from omega_turn_ros.robot import load_robot
+from omega_turn_sim_bridge.body_frame import orientation_of
 from omega_turn_sim_bridge.bridge_parameters import BRIDGE_PARAMETERS, make_config
 from omega_turn_sim_bridge.simulation import Simulation
 from omega_turn_sim_bridge.simulation_config import Observation
@@ -176,7 +176,8 @@ class PyBulletBridge(Node):
         pose, twist = self._odometry.pose.pose, self._odometry.twist.twist
         x, y, heading = (float(v) for v in seen.pose)
         pose.position.x, pose.position.y = x, y
-        pose.orientation.z, pose.orientation.w = math.sin(0.5 * heading), math.cos(0.5 * heading)
+        o = pose.orientation
+        o.x, o.y, o.z, o.w = orientation_of(heading, seen.roll)
         twist.linear.x, twist.linear.y, twist.angular.z = (float(v) for v in seen.twist)
 
     def _on_reset(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:

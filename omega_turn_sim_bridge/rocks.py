@@ -15,14 +15,19 @@ from omega_turn_sim_bridge.engine import pybullet
 from omega_turn_sim_bridge.terrain_config import TerrainConfig
 
 Array = NDArray[np.float64]
+Corners = tuple[tuple[float, float, float], ...]
 
-CORNERS = 24  # of each rock before the hull is taken
-SPREAD = 0.12  # standard deviation of the sizes, relative
-FLATNESS = (1.05, 0.95, 0.65)  # axes of the mean rock over its diameter: rocks lie flat
-PACKING = 0.9  # distance of neighbours before they fall, over the mean diameter
-TILT = 0.3  # [rad] standard deviation of the slant they are dropped at
-SETTLE_TIME = 3.0  # [s] given to the pile
+CORNERS = 40  # of each rock before the hull is taken
+SPREAD = 0.06  # standard deviation of the sizes, relative
+FLATNESS = (1.05, 0.95, 0.5)  # axes of the mean rock over its diameter: rocks lie flat
+PACKING = 1.15  # distance of neighbours before they fall, over the mean diameter: side by side
+TILT = 0.15  # [rad] standard deviation of the slant they are dropped at
+FILLINGS = 3  # layers of small stones poured over the rocks
+AT_REST = 0.01  # [m/s] of the fastest, below which a layer lies still
+LONGEST_FALL = 4.0  # [s] given to a layer
 SETTLE_STEP = 1.0 / 120.0  # [s]
+GLANCE = 0.25  # [s] between two looks at a falling layer
+FALL_FRICTION = 0.3  # of falling rocks, low so that stones find the gaps
 ROCK_COLOURS = ((0.55, 0.52, 0.48, 1.0), (0.45, 0.44, 0.42, 1.0), (0.62, 0.58, 0.52, 1.0))
 
 
@@ -31,35 +36,28 @@ class RockPile:
     """Rocks at rest.
 
     Attributes:
-        corners: of each rock about its centre of mass [m], each shape (CORNERS, 3).
+        corners: of each rock about its centre of mass [m], each shape (CORNERS, 3); the large
+            rocks first, then the stones between them.
         positions: of the centres in the world [m].
         orientations: quaternions x, y, z, w.
     """
 
-    corners: tuple[tuple[tuple[float, float, float], ...], ...]
+    corners: tuple[Corners, ...]
     positions: tuple[tuple[float, float, float], ...]
     orientations: tuple[tuple[float, float, float, float], ...]
 
-    @property
-    def tops(self) -> Array:
-        """Height of each rock's highest corner [m], shape (n_rocks,)."""
-        turns = [pybullet.getMatrixFromQuaternion(q)[6:] for q in self.orientations]
-        return np.array(
-            [
-                place[2] + (np.array(corners) @ np.array(up)).max()
-                for corners, place, up in zip(self.corners, self.positions, turns)
-            ]
-        )
-
 
 @lru_cache(maxsize=4)
-def settled_pile(size: float, extent: float, seed: int) -> RockPile:
-    """Drop a layer of rocks, side by side, into a pen around the origin and let them come to rest.
+def settled_pile(size: float, fill: float, extent: float, seed: int) -> RockPile:
+    """Drop rocks side by side into a pen around the origin, then stones into the gaps.
 
-    The physics of the pile runs in a client of its own, so the robot's starts clean.
+    Each layer lies still before the next falls, and carries it. Stones that come to lie higher
+    than the tops of the rocks are taken away. The physics of the pile runs in a client of its
+    own, so the robot's starts clean.
 
     Args:
-        size: mean diameter [m].
+        size: mean diameter of the rocks [m].
+        fill: mean diameter of the stones over that of the rocks; 0 leaves the gaps open.
         extent: half the side of the pen [m].
         seed: of sizes, shapes and places.
     """
@@ -71,17 +69,41 @@ def settled_pile(size: float, extent: float, seed: int) -> RockPile:
             fixedTimeStep=SETTLE_STEP, deterministicOverlappingPairs=1, physicsClientId=client
         )
         _build_pen(client, extent)
-        corners, bodies = [], []
-        for place in _drop_places(size, extent, rng):
-            rock = _random_rock(size, rng)
-            corners.append(rock)
-            bodies.append(_drop(client, rock, place, _random_turn(rng)))
-        for _ in range(round(SETTLE_TIME / SETTLE_STEP)):
-            pybullet.stepSimulation(physicsClientId=client)
-        poses = [pybullet.getBasePositionAndOrientation(b, physicsClientId=client) for b in bodies]
+        laid = _lay(client, size, 0.0, extent, rng)
+        level = float(np.median([_top(client, *rock) for rock in laid.items()]))
+        for _ in range(FILLINGS if fill > 0.0 else 0):
+            stones = _lay(client, fill * size, level, extent, rng)
+            laid |= {b: c for b, c in stones.items() if _top(client, b, c) < level}
+        poses = [pybullet.getBasePositionAndOrientation(b, physicsClientId=client) for b in laid]
     finally:
         pybullet.disconnect(physicsClientId=client)
-    return RockPile(tuple(corners), tuple(p for p, _ in poses), tuple(q for _, q in poses))
+    return RockPile(tuple(laid.values()), tuple(p for p, _ in poses), tuple(q for _, q in poses))
+
+
+def _lay(
+    client: int, size: float, height: float, extent: float, rng: np.random.Generator
+) -> dict[int, Corners]:
+    """Drop one layer from above `height` [m] and fix it where it comes to rest."""
+    layer: dict[int, Corners] = {}
+    for x, y, z in _drop_places(size, extent, rng):
+        rock = _random_rock(size, rng)
+        layer[_drop(client, rock, (x, y, height + z), _random_turn(rng))] = rock
+    for _ in range(round(LONGEST_FALL / GLANCE)):
+        for _ in range(round(GLANCE / SETTLE_STEP)):
+            pybullet.stepSimulation(physicsClientId=client)
+        rates = [pybullet.getBaseVelocity(body, physicsClientId=client)[0] for body in layer]
+        if np.linalg.norm(rates, axis=1).max() < AT_REST:
+            break
+    for body in layer:
+        pybullet.changeDynamics(body, -1, mass=0.0, physicsClientId=client)
+    return layer
+
+
+def _top(client: int, body: int, corners: Corners) -> float:
+    """Height of the highest corner [m]."""
+    place, turn = pybullet.getBasePositionAndOrientation(body, physicsClientId=client)
+    up = np.array(pybullet.getMatrixFromQuaternion(turn)[6:])
+    return float(place[2] + (np.array(corners) @ up).max())
 
 
 def build_rocks(client: int, pile: RockPile, config: TerrainConfig, friction: float) -> list[int]:
@@ -111,7 +133,7 @@ def build_rocks(client: int, pile: RockPile, config: TerrainConfig, friction: fl
     return rocks
 
 
-def _random_rock(size: float, rng: np.random.Generator) -> tuple[tuple[float, float, float], ...]:
+def _random_rock(size: float, rng: np.random.Generator) -> Corners:
     """Corners of a convex rock: points on an ellipsoid of random size."""
     points = rng.normal(size=(CORNERS, 3))
     points /= np.linalg.norm(points, axis=1, keepdims=True)
@@ -156,15 +178,15 @@ def _build_pen(client: int, extent: float) -> None:
         )
 
 
-def _drop(
-    client: int, corners: Sequence[Sequence[float]], place: Array, turn: Sequence[float]
-) -> int:
+def _drop(client: int, corners: Corners, place: Sequence[float], turn: Sequence[float]) -> int:
     shape = pybullet.createCollisionShape(
         pybullet.GEOM_MESH, vertices=corners, physicsClientId=client
     )
-    rock = pybullet.createMultiBody(10.0, shape, -1, place.tolist(), turn, physicsClientId=client)
+    rock = pybullet.createMultiBody(
+        10.0, shape, -1, place, turn, useMaximalCoordinates=1, physicsClientId=client
+    )
     pybullet.changeDynamics(
-        rock, -1, lateralFriction=0.8, rollingFriction=0.02, physicsClientId=client
+        rock, -1, lateralFriction=FALL_FRICTION, rollingFriction=0.001, physicsClientId=client
     )
     return int(rock)
 

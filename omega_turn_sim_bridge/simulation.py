@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from omega_turn_ros.errors import BadInputError, SimulationError
 from omega_turn_ros.robot import STANDARD_GRAVITY, LeggedRobot, Robot
-from omega_turn_sim_bridge.body_frame import tilted_heading
+from omega_turn_sim_bridge.body_frame import mean_roll, projected_heading
 from omega_turn_sim_bridge.client import open_client
 from omega_turn_sim_bridge.engine import pybullet
 from omega_turn_sim_bridge.granular import GranularGround
@@ -51,7 +51,6 @@ class Simulation:
         self._velocity_limit = self.config.velocity_limit or robot.velocity_limit
         self._joints = list(range(robot.n_joints))
         self._yaw = robot.yaw_indices
-        self._is_yaw = np.array([axis == 'yaw' for axis in robot.joint_axes])
         self._mass_fractions = robot.body_masses / robot.body_masses.sum()
         legged = isinstance(robot, LeggedRobot)
         self._bodies = self._yaw.tolist() if legged else self._joints  # of the mean body frame
@@ -190,7 +189,7 @@ class Simulation:
         positions, velocities = table.T
         efforts = self._effort_sum / max(self._effort_steps, 1)
         self._observed = True
-        pose, twist = self._mean_body_frame(positions, velocities)
+        pose, twist, roll = self._mean_body_frame(positions, velocities)
         if not all(np.isfinite(a).all() for a in (table, efforts, pose)):
             raise SimulationError(f'not finite at t = {self.time:.3f} s: the scene has exploded')
         if self.config.position_noise:
@@ -199,7 +198,7 @@ class Simulation:
             )
         if self.config.effort_noise:
             efforts = efforts + self._rng.normal(0.0, self.config.effort_noise, efforts.shape)
-        return Observation(self.time, positions, velocities, efforts, pose, twist)
+        return Observation(self.time, positions, velocities, efforts, pose, twist, roll)
 
     def obstacle_depth(self) -> float:
         """How deep the robot presses into obstacles or into itself, at most [m].
@@ -215,18 +214,6 @@ class Simulation:
         contacts = pybullet.getContactPoints(self._body, physicsClientId=self._client)
         depths = [-c[CONTACT_DISTANCE] for c in contacts if c[CONTACT_BODY_B] != level]
         return max(0.0, *depths) if depths else 0.0
-
-    def uprightness(self) -> float:
-        """Cosine of the bodies' tilt, mean: 1 lying as it was put, -1 upside down.
-
-        Raises:
-            SimulationError: the client has been closed.
-        """
-        self._check_open()
-        _, base = pybullet.getBasePositionAndOrientation(self._body, physicsClientId=self._client)
-        links = pybullet.getLinkStates(self._body, self._joints, physicsClientId=self._client)
-        turns = np.array([base] + [s[LINK_COM_TURN] for s in links])
-        return float(np.mean(1.0 - 2.0 * (turns[:, 0] ** 2 + turns[:, 1] ** 2)))
 
     def hold_posture(self) -> None:
         """Make the present posture the motor target.
@@ -369,7 +356,7 @@ class Simulation:
         lengths = self.robot.planar_link_lengths
         return 1.0 - np.cumsum(lengths)[:-1] / lengths.sum()
 
-    def _mean_body_frame(self, positions: Array, velocities: Array) -> tuple[Array, Array]:
+    def _mean_body_frame(self, positions: Array, velocities: Array) -> tuple[Array, Array, float]:
         client = self._client
         base, (qx, qy, qz, qw) = pybullet.getBasePositionAndOrientation(
             self._body, physicsClientId=client
@@ -379,10 +366,11 @@ class Simulation:
             self._body, self._bodies, computeLinkVelocity=1, physicsClientId=client
         )
         bend = float(self._behind @ positions[self._yaw])
+        roll = 0.0
         if self._ground.top > 0.0:
             turns = np.array([(qx, qy, qz, qw)] + [s[LINK_COM_TURN] for s in links])
-            bends = np.concatenate([[0.0], np.cumsum(np.where(self._is_yaw, positions, 0.0))])
-            yaw = tilted_heading(turns, bends - bend, self._mass_fractions) - bend
+            yaw = projected_heading(turns, self._mass_fractions) - bend
+            roll = mean_roll(turns, self._mass_fractions)
         else:
             yaw = math.atan2(2.0 * (qw * qz + qx * qy), 1.0 - 2.0 * (qy * qy + qz * qz))
         self._base_yaw += math.remainder(yaw - self._base_yaw, math.tau)
@@ -393,4 +381,5 @@ class Simulation:
         x, y, _ = self._mass_fractions @ centres
         vx, vy, _ = self._mass_fractions @ rates
         c, s = math.cos(heading), math.sin(heading)
-        return np.array([x, y, heading]), np.array([c * vx + s * vy, c * vy - s * vx, rate])
+        twist = np.array([c * vx + s * vy, c * vy - s * vx, rate])
+        return np.array([x, y, heading]), twist, roll

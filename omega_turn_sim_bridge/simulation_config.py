@@ -92,6 +92,8 @@ class Observation:
             (n_joints,).
         pose: mean body frame in the world: x [m], y [m], heading [rad, continuous], shape (3,).
         twist: its velocity in its own axes [m/s, m/s, rad/s], shape (3,).
+        roll: of the mean body frame [rad]: 0 lying as it was put, +-pi upside down; measured on
+            uneven ground only.
     """
 
     time: float
@@ -100,3 +102,4 @@ class Observation:
     efforts: Array
     pose: Array
     twist: Array
+    roll: float = 0.0

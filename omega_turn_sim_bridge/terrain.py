@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from omega_turn_ros.mechanics.force_laws import GranularResistance
 from omega_turn_ros.robot import Robot
 from omega_turn_sim_bridge.engine import pybullet
@@ -57,13 +55,8 @@ def build_ground(
         from omega_turn_sim_bridge.rocks import build_rocks, settled_pile
 
         size, extent = (x * robot.length for x in (config.rock_size_bl, config.extent_bl))
-        pile = settled_pile(size, extent, seed)
+        pile = settled_pile(size, config.rock_fill, extent, seed)
         rocks = build_rocks(client, pile, config, friction)
-        if config.rock_relief_bl > 0.0:
-            soil = float(np.median(pile.tops)) - config.rock_relief_bl * robot.length
-            pybullet.resetBasePositionAndOrientation(
-                level, (0, 0, max(0.0, soil)), (0, 0, 0, 1), physicsClientId=client
-            )
         top = _top_under(client, robot)
         return Ground((level, *rocks), (level, *rocks), solid='square', top=top)
     if config.kind == 'granular':

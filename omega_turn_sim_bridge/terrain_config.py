@@ -11,6 +11,7 @@ from omega_turn_ros.mechanics.force_laws import GranularResistance
 from omega_turn_ros.resources import read_config
 
 KINDS = ('flat', 'granular', 'pegboard', 'rocks')
+SMALLEST_STONE = 0.05  # of the pile's extent; smaller ones are thousands
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +29,7 @@ class TerrainConfig:
         peg_friction: coefficient between body and peg.
         clearance: least gap between straight robot and pegs at the start [m].
         rock_size_bl: mean diameter of the rocks [BL].
-        rock_relief_bl: soil fills the pile up to this far below the top of its median rock [BL];
+        rock_fill: mean diameter of the stones in the gaps between rocks, over that of the rocks;
             0 leaves the gaps open down to the ground.
         rock_friction: coefficient between body and rock.
         resistance_ratio: of grains, to sliding sideways over to sliding lengthways.
@@ -42,7 +43,7 @@ class TerrainConfig:
     peg_friction: float = 0.2
     clearance: float = 0.01
     rock_size_bl: float = 0.3
-    rock_relief_bl: float = 0.03
+    rock_fill: float = 0.4
     rock_friction: float = 0.5
     resistance_ratio: float = 1.5
 
@@ -51,13 +52,17 @@ class TerrainConfig:
         if self.kind not in KINDS:
             raise BadInputError('terrain kind', self.kind, f'one of {KINDS}')
         lengths = ('extent_bl', 'spacing_bl', 'peg_radius', 'peg_height', 'rock_size_bl')
-        for field in (*lengths, 'peg_friction', 'clearance', 'rock_relief_bl', 'rock_friction'):
+        for field in (*lengths, 'peg_friction', 'clearance', 'rock_fill', 'rock_friction'):
             value = getattr(self, field)
             number = isinstance(value, (int, float)) and not isinstance(value, bool)
             if not number or not math.isfinite(value) or value < 0.0:
                 raise BadInputError(f'terrain {field}', value, 'a finite number >= 0')
             if value == 0.0 and field in lengths:
                 raise BadInputError(f'terrain {field}', value, 'a length > 0')
+        smallest = self.rock_size_bl * (self.rock_fill or 1.0)
+        if self.rock_fill > 1.0 or smallest < SMALLEST_STONE * self.extent_bl:
+            expected = f'0, or at most 1 and stones of at least {SMALLEST_STONE:g} extent_bl'
+            raise BadInputError('terrain rock_fill', self.rock_fill, expected)
         ratio, largest = self.resistance_ratio, GranularResistance().ratio
         number = isinstance(ratio, (int, float)) and not isinstance(ratio, bool)
         if not number or not 1.0 <= ratio <= largest:

@@ -41,9 +41,9 @@ NEGLIGIBLE_TURN = 1e-6  # [rad]
 LARGEST_TURN = 1e9  # [rad] two centuries of turning; doubles still resolve its progress
 GATE_TIME = 0.5  # [s] over which a cycle lets amplitude offsets in and, at its end, out again
 SETTLE_TIME = 0.3  # [s] the robot lags its command before the heading is judged
-RATIO_RANGE = (0.3, 3.0)  # of measured to predicted angle per cycle worth believing
+ROLLED = 0.2  # cosine of roll from which a robot lies on the other side
+ROLLING_TIME = 0.5  # [s] from one side's posture to straight
 JUDGED_FROM = 0.005  # [rad] predicted; a smaller cycle says nothing
-LEARNED_FROM = 0.5  # [rad] predicted; small cycles turn otherwise than large ones
 
 
 class GaitController:
@@ -109,7 +109,7 @@ class GaitController:
             state,
             goal=goal,
             heading=state.heading.restarted(),
-            ratio=state.ground_ratio,
+            ground=state.ground.restarted(),
             cycle_start=state.cycle_start - state.heading.progress,
             cycles=0,
             budget=budget,
@@ -180,7 +180,8 @@ class GaitController:
         measured = inputs.heading if self.config.heading_feedback else None
         changes['heading'] = state.heading.advanced(predicted, measured)
         command, limited = limit_command(previous, target, dt, self.limits)
-        state = replace(state, **changes, command=command, limited=state.limited + limited)
+        changes |= {'upright': inputs.upright, 'limited': state.limited + limited}
+        state = replace(state, **changes, command=command)
         output = self._output(state, previous, dt)
         if running:
             state = self._next_motion(state, dt)
@@ -246,9 +247,33 @@ class GaitController:
         # A small cycle, such as a correction, must not be outgrown by what its waves yield.
         share = gate * min(abs(state.scale), 1.0)
         offsets = (share * state.offsets[0], share * state.offsets[1])
-        target = self._played.at(table.start_phase + turned, state.scale, offsets)
-        changes = {'turned': turned, 'phase_rate': rate, 'gate': gate}
-        return changes, target, predicted * state.ratio
+        side = self._side_now(state, dt)
+        target = self._posture(side, table.start_phase + turned, state.scale, offsets)
+        changes = {'turned': turned, 'phase_rate': rate, 'gate': gate, 'side': side}
+        return changes, target, predicted * state.ground.ratio
+
+    def _posture(
+        self,
+        side: float,
+        phase: float,
+        scale: float,
+        offsets: tuple[float, float] = (0.0, 0.0),
+    ) -> Array:
+        """Posture of the gait; half a roll reverses every joint as seen from above.
+
+        Amplitude offsets stay what the joints feel.
+        """
+        forward, turning = offsets
+        posture: Array = side * self._played.at(phase, scale, (side * forward, side * turning))
+        return posture
+
+    def _side_now(self, state: ControllerState, dt: float) -> float:
+        """Go over to the other side's posture, past straight, once the robot has rolled."""
+        side = math.copysign(1.0, state.side)
+        if side * state.upright < -ROLLED:
+            side = -side
+        reach = dt / ROLLING_TIME
+        return min(max(side, state.side - reach), state.side + reach)
 
     def _drives(self, state: ControllerState) -> bool:
         return state.goal is None and self.pace(state).share > 0.0
@@ -289,7 +314,7 @@ class GaitController:
         close = abs(state.remaining) <= self._tolerance
         if state.cycles and (close or state.cycles >= state.budget):
             return replace(state, goal=None, shortfall=state.remaining)
-        scale = plan_turn(state.remaining, self.gait.calibration, state.ratio).scale
+        scale = plan_turn(state.remaining, self.gait.calibration, state.ground.planned).scale
         return self._move_to_start(state, scale, 0.0)
 
     def _end_cycle(self, state: ControllerState) -> ControllerState:
@@ -304,11 +329,13 @@ class GaitController:
         rest = state.remaining + bend
         if abs(rest) <= self._tolerance or state.cycles >= state.budget:
             return self._move_to_rest(state)
-        return self._go_on(state, plan_turn(rest, self.gait.calibration, state.ratio).scale, bend)
+        plan = plan_turn(rest, self.gait.calibration, state.ground.planned)
+        return self._go_on(state, plan.scale, bend)
 
     def _go_on(self, state: ControllerState, scale: float, bend: float) -> ControllerState:
         """Go from one cycle to the next, through rest where the gait must."""
-        if not self.gait.gait.scales_size and not self._start_alike(scale, state.scale):
+        alike = self._start_alike(scale, state.scale) and state.side * state.upright > 0.0
+        if not self.gait.gait.scales_size and not alike:
             return self._move_to_rest(state)  # and plan again from there
         return self._move_to_start(state, scale, bend)
 
@@ -320,18 +347,16 @@ class GaitController:
             return state
         measured = state.heading.progress - state.cycle_start
         state = replace(state, jam=state.jam.judged(measured, predicted, self.config.period))
-        ratio = min(max(measured / predicted, RATIO_RANGE[0]), RATIO_RANGE[1])
-        if abs(predicted) < LEARNED_FROM:
-            if not self.gait.gait.scales_size:
-                ratio = max(ratio, state.ground_ratio)  # a small miss is no reason to push harder
-            return replace(state, ratio=ratio)
-        return replace(state, ratio=ratio, ground_ratio=0.5 * (state.ground_ratio + ratio))
+        firm = self.gait.gait.scales_size  # others turn little by less than their least scale
+        ground = state.ground.judged(measured, predicted, state.remaining, firm)
+        return replace(state, ground=ground)
 
     def _move_to_start(
         self, state: ControllerState, scale: float, bend_now: float
     ) -> ControllerState:
         """Move along one line in shape space to the start shape at `scale`."""
-        target = self._played.at(self.gait.calibration.start_phase, scale, (0.0, 0.0))
+        state = replace(state, side=math.copysign(1.0, state.upright))
+        target = self._posture(state.side, self.gait.calibration.start_phase, scale)
         bend = self.gait.calibration.bend_heading_of(scale) - bend_now
         command = self._known(state)
         if np.abs(target - command).max() < SAME_SHAPE:
@@ -342,7 +367,7 @@ class GaitController:
                 turned=0.0,
                 cycle_start=state.heading.progress,
             )
-        move = self._plan_move(command, target, self._played.waypoint(target), bend)
+        move = self._plan_move(command, target, self._waypoint(state, target), bend)
         return replace(
             state, mode=Mode.MOVING, move=move, to_cycle=True, scale=scale, phase_rate=0.0
         )
@@ -350,16 +375,22 @@ class GaitController:
     def _move_to_rest(self, state: ControllerState) -> ControllerState:
         command = self._known(state)
         heading_change = 0.0
-        rest = self._played.rest
+        side = math.copysign(1.0, state.side)
+        rest = side * self._played.rest
         ended = state.mode is Mode.CYCLING and state.turned >= 2.0 * math.pi
         if ended and not self.gait.gait.scales_size:
             heading_change = -self.gait.calibration.bend_heading_of(state.scale)  # at no cost
         elif np.abs((command - rest)[self._joints]).max() > AT_REST:
-            heading_change = self._unbend_heading(command[self._joints])
-        move = self._plan_move(command, rest, self._played.waypoint(command), heading_change)
+            heading_change = self._unbend_heading(side * command[self._joints])
+        move = self._plan_move(command, rest, self._waypoint(state, command), heading_change)
         return replace(
             state, mode=Mode.MOVING, move=move, to_cycle=False, phase_rate=0.0, settling=0.0
         )
+
+    def _waypoint(self, state: ControllerState, posture: Array) -> Array | None:
+        side = math.copysign(1.0, state.side)
+        waypoint = self._played.waypoint(side * posture)
+        return None if waypoint is None else side * waypoint
 
     def _start_alike(self, scale: float, other: float) -> bool:
         """Whether cycles of two scales begin near enough to each other to go on without a rest."""
@@ -367,7 +398,7 @@ class GaitController:
 
     def _start_equal(self, scale: float, other: float) -> bool:
         start = self.gait.calibration.start_phase
-        first, second = (self._played.at(start, s, (0.0, 0.0)) for s in (scale, other))
+        first, second = (self._posture(1.0, start, s) for s in (scale, other))
         return bool(np.abs(first - second).max() < SAME_SHAPE)
 
     def _plan_move(self, start: Array, end: Array, waypoint: Array | None, bend: float) -> Move:
@@ -381,7 +412,7 @@ class GaitController:
         """Whether finishing the cycle under way leads towards the new goal, not past it."""
         table = self.gait.calibration
         rest = table.angle_of(state.scale) - table.heading_at(state.scale, state.turned)
-        rest = rest * state.ratio - table.bend_heading_of(state.scale)
+        rest = rest * state.ground.ratio - table.bend_heading_of(state.scale)
         return 0.0 <= rest / goal <= 1.0
 
     def _move_velocity(self) -> float:

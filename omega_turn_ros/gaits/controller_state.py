@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from omega_turn_ros.gaits.drive import Drive
+from omega_turn_ros.gaits.ground_response import GroundResponse
 from omega_turn_ros.gaits.heading import HeadingTracker
 from omega_turn_ros.gaits.jam import JamWatch
 from omega_turn_ros.gaits.move import Move
@@ -68,6 +69,7 @@ class Inputs:
         heading: measured heading [rad], any branch; None when there is none or it is stale.
         offsets: wanted offsets of (A_f, A_t) [rad]; (0, 0) when there are none.
         effort: largest |effort| of any joint [N m]; 0 where it is not measured.
+        upright: cosine of the body's roll: 1 lying on its belly, -1 on its back.
     """
 
     positions: Array | None = None
@@ -75,6 +77,7 @@ class Inputs:
     heading: float | None = None
     offsets: tuple[float, float] = (0.0, 0.0)
     effort: float = 0.0
+    upright: float = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,8 +97,7 @@ class ControllerState:
         gate: how much of the amplitude offsets the cycle lets in, 0..1.
         offsets: amplitude offsets in force [rad].
         cycle_start: progress at the start of the cycle [rad].
-        ratio: measured over predicted angle per cycle in this turn.
-        ground_ratio: the same, learned from large cycles; where the next turn starts from.
+        ground: how much it turns the robot.
         cycles: cycles completed in this turn.
         budget: cycles after which the turn is given up.
         shortfall: angle the last turn left unturned when it ended [rad].
@@ -104,6 +106,8 @@ class ControllerState:
         limited: commands changed by a limit so far.
         jam: whether the robot is stuck.
         drive: wanted velocity while there is no turn.
+        upright: the input of that name.
+        side: factor on all joints: 1 on the belly, -1 on the back, in between on the way.
     """
 
     mode: Mode = Mode.WAITING
@@ -118,8 +122,7 @@ class ControllerState:
     gate: float = 0.0
     offsets: tuple[float, float] = (0.0, 0.0)
     cycle_start: float = 0.0
-    ratio: float = 1.0
-    ground_ratio: float = 1.0
+    ground: GroundResponse = field(default_factory=GroundResponse)
     cycles: int = 0
     budget: int = 0
     shortfall: float = 0.0
@@ -128,6 +131,8 @@ class ControllerState:
     limited: int = 0
     jam: JamWatch = field(default_factory=JamWatch)
     drive: Drive = field(default_factory=Drive)
+    upright: float = 1.0
+    side: float = 1.0
 
     @property
     def remaining(self) -> float:

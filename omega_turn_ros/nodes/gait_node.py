@@ -25,11 +25,13 @@ from omega_turn_ros.nodes.inbox import Inbox
 from omega_turn_ros.nodes.joint_message import JointReader, JointWriter
 from omega_turn_ros.nodes.messages import (
     JAMMED,
+    ON_BACK,
     STATES_STALE,
     heading_of,
     read_offsets,
     text_of_end,
     text_of_request,
+    uprightness_of,
 )
 from omega_turn_ros.nodes.parameters import DECLARE_GIVEN, NodeParameters
 from omega_turn_ros.nodes.qos import COMMAND, REMAINING, REQUEST, STATE, STATE_INPUT
@@ -204,7 +206,7 @@ class GaitNode(Node):
 
     def _read_inputs(self) -> None:
         positions, heading, offsets = self._inputs.positions, self._heading, self._inputs.offsets
-        effort = self._inputs.effort
+        effort, upright = self._inputs.effort, self._inputs.upright
         for data in self._joint_states.drain():
             try:
                 reading = self._joint_reader.read(data)
@@ -218,7 +220,7 @@ class GaitNode(Node):
                 self._states_seen.mark()
         for message in self._odom.drain():
             try:
-                heading = heading_of(message)
+                heading, upright = heading_of(message), uprightness_of(message)
             except BadInputError as error:
                 self._health.refuse('odom', str(error))
             else:
@@ -245,6 +247,7 @@ class GaitNode(Node):
             heading,
             offsets if compliant else (0.0, 0.0),
             effort,
+            upright if self._settings['heading_feedback'] == 'odom' else 1.0,
         )
 
     def _advance(self, dt: float, stamp: Time) -> None:
@@ -317,6 +320,8 @@ class GaitNode(Node):
             problems.append('odom stale: heading predicted')
             if state.goal is not None:
                 self._health.warn('odom', 'no odom: heading is predicted')
+        if state.side < 0.0:
+            problems.append(ON_BACK)
         if state.jam.jammed and state.goal is not None:
             problems.append(JAMMED)
             self._health.warn(
@@ -330,7 +335,7 @@ class GaitNode(Node):
             'progress [rad]': state.heading.progress,
             'cycles': state.cycles,
             'scale': state.scale,
-            'ground ratio': state.ground_ratio,
+            'ground ratio': state.ground.usual,
             'shortfall [rad]': state.shortfall,
             'drive [m/s, rad/s]': (state.drive.linear, state.drive.angular),
             'commands limited': state.limited,

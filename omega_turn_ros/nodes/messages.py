@@ -10,6 +10,7 @@ from sensor_msgs.msg import JointState
 from omega_turn_ros.errors import BadInputError
 from omega_turn_ros.nodes.joint_message import JointReader
 
+ON_BACK = 'on its back: every joint mirrored'  # in diagnostics
 JAMMED = 'jammed'  # in diagnostics, while a turn goes on and gets nowhere
 STATES_STALE = 'joint_states stale'  # a problem in the gait node's diagnostics
 
@@ -25,6 +26,12 @@ def heading_of(message: Odometry) -> float:
     if not abs(norm - 1.0) < 1e-2:  # also catches NaN
         raise BadInputError('orientation', (q.x, q.y, q.z, q.w), 'a unit quaternion')
     return math.atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z))
+
+
+def uprightness_of(message: Odometry) -> float:
+    """Cosine of the tilt of a pose that `heading_of` has accepted: 1 level, -1 upside down."""
+    q = message.pose.pose.orientation
+    return 1.0 - 2.0 * (q.x * q.x + q.y * q.y)
 
 
 def read_offsets(message: JointState, reader: JointReader, limit: float) -> tuple[float, float]:

@@ -80,4 +80,4 @@ class Rig:
         state = self.state
         blind, _ = self.controller.step(state, self.inputs(heading=None), self.dt)
         change = blind.heading.progress - state.heading.progress
-        return change / state.ratio if state.mode is Mode.CYCLING else change
+        return change / state.ground.ratio if state.mode is Mode.CYCLING else change

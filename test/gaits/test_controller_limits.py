@@ -40,6 +40,7 @@ class Run:
     posture: float
     heading: float | None
     offsets: tuple[float, float]
+    upright: float = 1.0
 
 
 HEALTHY = Run(1, 0.05, True, True, 0.0, None, (0.0, 0.0))
@@ -57,6 +58,7 @@ run = st.builds(
     posture=st.floats(-3.0, 3.0),
     heading=st.one_of(st.none(), st.floats(-math.pi, math.pi)),
     offsets=st.one_of(st.just((0.0, 0.0)), st.tuples(offset, offset)),
+    upright=st.one_of(st.just(1.0), st.floats(-1.0, 1.0), st.just(math.nan)),
 )
 chapter = st.tuples(
     turn,
@@ -101,7 +103,7 @@ class Watched:
         posture = np.full(16, now.posture)
         if now.at_command and before.command is not None:
             posture = before.command
-        inputs = Inputs(posture, now.fresh, now.heading, now.offsets)
+        inputs = Inputs(posture, now.fresh, now.heading, now.offsets, upright=now.upright)
         self.state, output = self.controller.step(before, inputs, now.dt)
         assert output is not None
         positions = output.positions

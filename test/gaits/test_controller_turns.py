@@ -120,7 +120,7 @@ def test_ratio_learned_on_a_large_turn_serves_the_next(make_rig: MakeRig) -> Non
     rig = make_rig(0.6, heading_feedback=True)
     rig.ask(7.0)
     rig.finish()
-    assert rig.state.ground_ratio == pytest.approx(0.6, abs=0.03)
+    assert rig.state.ground.usual == pytest.approx(0.6, abs=0.03)
     rig.ask(1.6)  # two cycles on this ground, one on the predicted
     rig.finish()
     assert rig.state.cycles == 2
@@ -130,8 +130,8 @@ def test_small_turn_teaches_nothing_about_large_ones(make_rig: MakeRig) -> None:
     rig = make_rig(0.6, heading_feedback=True)
     rig.ask(0.3)
     rig.finish()
-    assert rig.state.ratio < 0.9
-    assert rig.state.ground_ratio == 1.0
+    assert rig.state.ground.ratio < 0.9
+    assert rig.state.ground.usual == 1.0
 
 
 def test_heading_is_judged_once_the_robot_has_settled(make_rig: MakeRig) -> None:
@@ -263,7 +263,7 @@ def test_cycle_under_way_is_judged_whole_when_a_newer_turn_takes_it_over(
     rig.ask(5.0)
     assert rig.state.mode is Mode.CYCLING
     rig.run_until(lambda state: state.cycles == 1)
-    assert rig.state.ratio == pytest.approx(0.6, abs=1e-3)
+    assert rig.state.ground.usual == pytest.approx(0.8, abs=1e-3)  # half-way from 1 to 0.6
 
 
 def test_turn_of_zero_ends_the_turn_at_once_and_goes_to_rest(make_rig: MakeRig) -> None:

@@ -293,3 +293,26 @@ def test_wave_amplitudes_bend_the_body_as_far_as_they_say(make_turner: MakeTurne
     plain = peak((0.0, 0.0), 'plain')
     assert peak((0.3, 0.0), 'pushed') - plain == pytest.approx(0.3, abs=0.15)
     assert peak((0.3, 0.0), 'deaf', use_compliance=False) == plain
+
+
+def rolled(message: Odometry) -> Odometry:
+    """The same heading, upside down: half a roll before the turn."""
+    q = message.pose.pose.orientation
+    q.x, q.y, q.z, q.w = q.w, q.z, 0.0, 0.0
+    return message
+
+
+@pytest.mark.parametrize('feedback', ['odom', 'none'])
+def test_robot_on_its_back_is_told_to_turn_the_other_way_round_if_odom_counts(
+    graph: Graph, feedback: str
+) -> None:
+    first = []
+    for way in (lambda message: message, rolled):
+        turner = Turner(graph, f'robot{len(first)}', heading_feedback=feedback)
+        turner.robot.spoil['odom'] = way
+        turner.start_turn(1.0)
+        turner.wait_for_cycle()
+        first.append(turner.watch.positions)
+    count = min(len(commands) for commands in first)
+    sign = -1.0 if feedback == 'odom' else 1.0
+    np.testing.assert_allclose(first[1][:count], sign * first[0][:count], atol=1e-9)

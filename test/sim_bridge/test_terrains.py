@@ -42,6 +42,8 @@ def test_every_kind_of_ground_is_shipped_under_its_name() -> None:
         ('kind: pegboard\nspacing_bl: wide', 'terrain spacing_bl'),
         ('kind: pegboard\npeg_friction: -0.1', 'terrain peg_friction'),
         ('kind: rocks\nrock_size_bl: .nan', 'terrain rock_size_bl'),
+        ('kind: rocks\nrock_fill: 0.05', 'terrain rock_fill'),
+        ('kind: rocks\nrock_fill: 1.5', 'terrain rock_fill'),
         ('kind: granular\nresistance_ratio: 0.9', 'terrain resistance_ratio'),
         ('kind: granular\nresistance_ratio: loose', 'terrain resistance_ratio'),
         ('kind: rocks\nextent_bl: true', 'terrain extent_bl'),

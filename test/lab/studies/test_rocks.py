@@ -9,7 +9,7 @@ import pytest
 from PIL.PngImagePlugin import PngImageFile
 
 from omega_turn_lab.obstacle_trial import ObstacleTrial
-from omega_turn_lab.studies.rocks import GAITS, OTHER_RELIEFS_BL, PILES, STUDY
+from omega_turn_lab.studies.rocks import GAITS, OTHER_FILLS, PILES, STUDY
 from omega_turn_lab.studies.rows import Row
 from omega_turn_lab.studies.run import ROBOT
 from omega_turn_lab.studies.study import Outcome, Plan
@@ -61,7 +61,7 @@ def value(table: list[Row], case: str, quantity: str) -> float | None:
 
 def test_each_gait_meets_the_same_piles(tried: Outcome) -> None:
     piles = [task for task in tried.tried if task.terrain.kind == 'rocks']  # type: ignore[attr-defined]
-    assert len(piles) == (len(GAITS) + len(OTHER_RELIEFS_BL)) * PILES
+    assert len(piles) == (len(GAITS) + len(OTHER_FILLS)) * PILES
     for task in piles:
         # What lies flat may sag; what lifts itself needs its torque.
         assert (task.pitch_effort > 0.0) is isinstance(task.gait, WaveGait)  # type: ignore[attr-defined]
@@ -75,9 +75,9 @@ def test_what_rocks_leave_of_a_turn_is_told(table: list[Row], gait: str) -> None
     assert value(table, f'{gait}, rocks', 'rolled_over') == 0.25
 
 
-def test_more_and_less_soil_is_told_for_the_omega_turn(table: list[Row]) -> None:
-    for relief in OTHER_RELIEFS_BL:
-        case = f'omega turn, rocks, soil {relief:g} BL below their tops'
+def test_other_fillings_are_told_for_the_omega_turn(table: list[Row]) -> None:
+    for fill in OTHER_FILLS:
+        case = f'omega turn, rocks, stones {fill:g} of their size between'
         assert value(table, case, 'angle') == pytest.approx(0.5 * HARD)
 
 

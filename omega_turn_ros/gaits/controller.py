@@ -24,6 +24,7 @@ from omega_turn_ros.gaits.controller_state import (
     Mode,
     Output,
 )
+from omega_turn_ros.gaits.cycle_player import SAME_SHAPE, CyclePlayer
 from omega_turn_ros.gaits.drive import Drive, Pace, pace_of
 from omega_turn_ros.gaits.library import LibraryGait
 from omega_turn_ros.gaits.limits import JointLimits, limit_command
@@ -34,15 +35,10 @@ from omega_turn_ros.robot import Robot
 Array = NDArray[np.float64]
 
 AT_REST = 1e-3  # [rad] from the rest shape: nothing to unbend
-SAME_SHAPE = 1e-4  # [rad] between start shapes: no move needed
 NEAR = 0.1  # [rad] a move this short passes no waypoint
-SAME_SCALE = 0.05  # start postures this close are reached without a rest
 NEGLIGIBLE_TURN = 1e-6  # [rad]
 LARGEST_TURN = 1e9  # [rad] two centuries of turning; doubles still resolve its progress
-GATE_TIME = 0.5  # [s] over which a cycle lets amplitude offsets in and, at its end, out again
 SETTLE_TIME = 0.3  # [s] the robot lags its command before the heading is judged
-ROLLED = 0.2  # cosine of roll from which a robot lies on the other side
-ROLLING_TIME = 0.5  # [s] from one side's posture to straight
 JUDGED_FROM = 0.005  # [rad] predicted; a smaller cycle says nothing
 
 
@@ -80,10 +76,9 @@ class GaitController:
             raise BadInputError('gait', gait.name, f'joint angles within {limits.position} rad')
         self.robot, self.gait, self.config, self.limits = robot, gait, config, limits
         self._unbend_heading = unbend_heading
-        self._played = gait.gait.on(robot)
+        self._player = CyclePlayer(gait, robot, config)
         # Without feedback the prediction closes exactly; what is left is rounding.
         self._tolerance = config.heading_tolerance if config.heading_feedback else 1e-3
-        self._cycle_rate = 2.0 * math.pi / config.period
         shortest = shortest_period(gait, limits.velocity)
         if config.period < shortest:
             raise BadInputError('period', config.period, f'at least {shortest:.3g} s')
@@ -172,7 +167,8 @@ class GaitController:
             changes['move'], predicted = state.move.advanced(dt)
             target = changes['move'].position
         elif running and state.mode is Mode.CYCLING:
-            changes, target, predicted = self._step_cycle(state, dt)
+            share, goes_on = self.pace(state).share, self._goes_on(state)
+            changes, target, predicted = self._player.advanced(state, share, goes_on, dt)
             if inputs.effort > 0.0:
                 changes['jam'] = state.jam.advanced(inputs.effort, self.robot.effort_limit, dt)
         elif state.mode is Mode.CYCLING:
@@ -223,58 +219,6 @@ class GaitController:
             return replace(state, catching_up=None), True
         return replace(state, catching_up=waited), False
 
-    def _step_cycle(
-        self, state: ControllerState, dt: float
-    ) -> tuple[dict[str, Any], Array, float]:
-        """Return the state's changes, the wanted command and the predicted heading change."""
-        left = 2.0 * math.pi - state.turned
-        acceleration = self._cycle_rate / self.config.phase_ramp_time
-        wanted = self.pace(state).share * self._cycle_rate
-        change = acceleration * dt
-        rate = min(max(wanted, state.phase_rate - change), state.phase_rate + change)
-        if not self._goes_on(state):
-            # The floor carries the phase over the end, where the braking law alone would creep.
-            floor = min(0.05 * self._cycle_rate, wanted)
-            rate = min(rate, max(math.sqrt(2.0 * acceleration * left), floor))
-        turned = min(state.turned + rate * dt, 2.0 * math.pi)
-        # The cycle ends in its own shape: unbending offsets would count as heading never turned.
-        closing = (2.0 * math.pi - turned) / (self._cycle_rate * GATE_TIME)
-        gate = min(state.gate + dt / GATE_TIME, closing, 1.0)
-        table = self.gait.calibration
-        predicted = table.heading_at(state.scale, turned) - table.heading_at(
-            state.scale, state.turned
-        )
-        # A small cycle, such as a correction, must not be outgrown by what its waves yield.
-        share = gate * min(abs(state.scale), 1.0)
-        offsets = (share * state.offsets[0], share * state.offsets[1])
-        side = self._side_now(state, dt)
-        target = self._posture(side, table.start_phase + turned, state.scale, offsets)
-        changes = {'turned': turned, 'phase_rate': rate, 'gate': gate, 'side': side}
-        return changes, target, predicted * state.ground.ratio
-
-    def _posture(
-        self,
-        side: float,
-        phase: float,
-        scale: float,
-        offsets: tuple[float, float] = (0.0, 0.0),
-    ) -> Array:
-        """Posture of the gait; half a roll reverses every joint as seen from above.
-
-        Amplitude offsets stay what the joints feel.
-        """
-        forward, turning = offsets
-        posture: Array = side * self._played.at(phase, scale, (side * forward, side * turning))
-        return posture
-
-    def _side_now(self, state: ControllerState, dt: float) -> float:
-        """Go over to the other side's posture, past straight, once the robot has rolled."""
-        side = math.copysign(1.0, state.side)
-        if side * state.upright < -ROLLED:
-            side = -side
-        reach = dt / ROLLING_TIME
-        return min(max(side, state.side - reach), state.side + reach)
-
     def _drives(self, state: ControllerState) -> bool:
         return state.goal is None and self.pace(state).share > 0.0
 
@@ -283,7 +227,7 @@ class GaitController:
         if state.goal is not None:
             return False
         pace = self.pace(state)
-        return pace.share > 0.0 and self._start_equal(pace.scale, state.scale)
+        return pace.share > 0.0 and self._player.starts_equally(pace.scale, state.scale)
 
     def _next_motion(self, state: ControllerState, dt: float) -> ControllerState:
         """Go from one motion to the next where one has ended."""
@@ -334,7 +278,7 @@ class GaitController:
 
     def _go_on(self, state: ControllerState, scale: float, bend: float) -> ControllerState:
         """Go from one cycle to the next, through rest where the gait must."""
-        alike = self._start_alike(scale, state.scale) and state.side * state.upright > 0.0
+        alike = self._player.starts_alike(scale, state.scale) and state.side * state.upright > 0.0
         if not self.gait.gait.scales_size and not alike:
             return self._move_to_rest(state)  # and plan again from there
         return self._move_to_start(state, scale, bend)
@@ -356,7 +300,7 @@ class GaitController:
     ) -> ControllerState:
         """Move along one line in shape space to the start shape at `scale`."""
         state = replace(state, side=math.copysign(1.0, state.upright))
-        target = self._posture(state.side, self.gait.calibration.start_phase, scale)
+        target = self._player.start(state.side, scale)
         bend = self.gait.calibration.bend_heading_of(scale) - bend_now
         command = self._known(state)
         if np.abs(target - command).max() < SAME_SHAPE:
@@ -367,7 +311,7 @@ class GaitController:
                 turned=0.0,
                 cycle_start=state.heading.progress,
             )
-        move = self._plan_move(command, target, self._waypoint(state, target), bend)
+        move = self._plan_move(command, target, self._player.waypoint(state.side, target), bend)
         return replace(
             state, mode=Mode.MOVING, move=move, to_cycle=True, scale=scale, phase_rate=0.0
         )
@@ -376,30 +320,16 @@ class GaitController:
         command = self._known(state)
         heading_change = 0.0
         side = math.copysign(1.0, state.side)
-        rest = side * self._played.rest
+        rest = self._player.rest(side)
         ended = state.mode is Mode.CYCLING and state.turned >= 2.0 * math.pi
         if ended and not self.gait.gait.scales_size:
             heading_change = -self.gait.calibration.bend_heading_of(state.scale)  # at no cost
         elif np.abs((command - rest)[self._joints]).max() > AT_REST:
             heading_change = self._unbend_heading(side * command[self._joints])
-        move = self._plan_move(command, rest, self._waypoint(state, command), heading_change)
+        move = self._plan_move(command, rest, self._player.waypoint(side, command), heading_change)
         return replace(
             state, mode=Mode.MOVING, move=move, to_cycle=False, phase_rate=0.0, settling=0.0
         )
-
-    def _waypoint(self, state: ControllerState, posture: Array) -> Array | None:
-        side = math.copysign(1.0, state.side)
-        waypoint = self._played.waypoint(side * posture)
-        return None if waypoint is None else side * waypoint
-
-    def _start_alike(self, scale: float, other: float) -> bool:
-        """Whether cycles of two scales begin near enough to each other to go on without a rest."""
-        return abs(scale - other) <= SAME_SCALE or self._start_equal(scale, other)
-
-    def _start_equal(self, scale: float, other: float) -> bool:
-        start = self.gait.calibration.start_phase
-        first, second = (self._posture(1.0, start, s) for s in (scale, other))
-        return bool(np.abs(first - second).max() < SAME_SHAPE)
 
     def _plan_move(self, start: Array, end: Array, waypoint: Array | None, bend: float) -> Move:
         velocity = self._move_velocity()

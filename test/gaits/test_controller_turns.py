@@ -11,8 +11,9 @@ import pytest
 from rig import Rig
 
 from omega_turn_ros.errors import BadInputError
-from omega_turn_ros.gaits.controller import GATE_TIME, SETTLE_TIME, GaitController
+from omega_turn_ros.gaits.controller import SETTLE_TIME, GaitController
 from omega_turn_ros.gaits.controller_state import Inputs, Mode
+from omega_turn_ros.gaits.cycle_player import GATE_TIME
 from omega_turn_ros.gaits.library import LibraryGait, load_gait
 from omega_turn_ros.gaits.turn_plan import plan_turn
 from omega_turn_ros.robot import Robot

@@ -19,11 +19,12 @@ import numpy as np
 from omega_turn_lab.obstacle_trial import ObstacleTrial
 from omega_turn_lab.studies.figures import COLOURS, new_figure
 from omega_turn_lab.studies.motion_picture import draw_motion
+from omega_turn_lab.studies.patches import PatchesTask
 from omega_turn_lab.studies.published import paper_figure
 from omega_turn_lab.studies.rows import Row, params_of
 from omega_turn_lab.studies.spread import spread_of
 from omega_turn_lab.studies.study import Outcome, Plan, Study
-from omega_turn_lab.studies.tasks import DesignTask, Result
+from omega_turn_lab.studies.tasks import DesignTask, Result, Task
 from omega_turn_lab.uneven import pitch_effort_on
 from omega_turn_ros.compliance.controller import ComplianceConfig
 from omega_turn_ros.gaits.library import load_gait
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
 NAME = 'rocks'
 PILES = 20
 OTHER_FILLS = (0.0, 0.6)  # the omega turn is tried with open gaps and larger stones, too
+BEARINGS = (0.1, 0.2, 0.4)  # shares of level ground that bear, for comparison by theory
 OMEGA, COMPLIANT = 'omega turn', 'compliant omega turn'
 PLANAR = {
     OMEGA: 1.0,
@@ -82,12 +84,19 @@ def _filled(outcome: Outcome, fill: float) -> list[ObstacleTrial]:
     return [_on_rocks(outcome, OMEGA, seed, terrain) for seed in range(PILES)]
 
 
-def _trials(outcome: Outcome) -> list[ObstacleTrial]:
+def _patches(outcome: Outcome, bearing: float) -> PatchesTask:
+    """The omega turn by theory where level patches as far apart as the rocks bear the body."""
+    plan, apart = outcome.plan, load_terrain('rocks').rock_size_bl
+    return PatchesTask(plan.robot, outcome.gait(_task(plan, OMEGA)), bearing, apart, plan.seed)
+
+
+def _trials(outcome: Outcome) -> list[Task]:
     # Pile by pile, so that an interrupted run has a little of everything.
     by_gait = [_pile(outcome, gait) for gait in GAITS]
     filled = [_filled(outcome, fill) for fill in OTHER_FILLS]
     piles = (t for pile in zip(*by_gait, *filled) for t in pile)
-    return [*(_hard(outcome, g) for g in GAITS), *piles]
+    patches = (_patches(outcome, bearing) for bearing in BEARINGS)
+    return [*(_hard(outcome, g) for g in GAITS), *patches, *piles]
 
 
 def _tried(outcome: Outcome, gait: str) -> tuple[float, list[Result]]:
@@ -110,7 +119,7 @@ def _rows(outcome: Outcome) -> list[Row]:
                 paper = paper_figure(NAME, f'angle_{ground.replace(" ", "_")}', params)
             ours = theory if (quantity, ground) == ('angle', HARD) else None
             rows.append(Row(f'{gait}, {ground}', params, quantity, unit, *paper, ours, value))
-    return [*rows, *_fill_rows(outcome)]
+    return [*rows, *_fill_rows(outcome), *_patch_rows(outcome)]
 
 
 def _fill_rows(outcome: Outcome) -> list[Row]:
@@ -123,6 +132,18 @@ def _fill_rows(outcome: Outcome) -> list[Row]:
         case = f'{OMEGA}, rocks, stones {fill:g} of their size between'
         for quantity, value in (('angle', spread.mean), ('angle_std', spread.deviation)):
             rows.append(Row(case, params, quantity, 'deg', None, None, None, value))
+    return rows
+
+
+def _patch_rows(outcome: Outcome) -> list[Row]:
+    """What patchy support alone does to the omega turn, by force balance."""
+    rows: list[Row] = []
+    for bearing in BEARINGS if outcome.tried else ():
+        found = outcome.tried[_patches(outcome, bearing)]['angles_deg']
+        params = {**params_of(_task(outcome.plan, OMEGA)), 'bearing': bearing}
+        case = f'{OMEGA}, level patches that bear, {bearing:g} of the ground'
+        for quantity, value in (('angle', np.mean(found)), ('angle_std', np.std(found, ddof=1))):
+            rows.append(Row(case, params, quantity, 'deg', None, None, float(value), None))
     return rows
 
 

@@ -9,7 +9,8 @@ import pytest
 from PIL.PngImagePlugin import PngImageFile
 
 from omega_turn_lab.obstacle_trial import ObstacleTrial
-from omega_turn_lab.studies.rocks import GAITS, OTHER_FILLS, PILES, STUDY
+from omega_turn_lab.studies.patches import PatchesTask
+from omega_turn_lab.studies.rocks import BEARINGS, GAITS, OTHER_FILLS, PILES, STUDY
 from omega_turn_lab.studies.rows import Row
 from omega_turn_lab.studies.run import ROBOT
 from omega_turn_lab.studies.study import Outcome, Plan
@@ -23,6 +24,8 @@ HARD = 80.0  # [deg] of every gait on hard ground in the made-up trials; half of
 
 def made_up(task: Task) -> dict[str, Any]:
     """Half the angle on rocks, and every fourth pile rolls the robot over."""
+    if isinstance(task, PatchesTask):
+        return {'angles_deg': [70.0, 90.0]}
     assert isinstance(task, ObstacleTrial)
     on_rocks = task.terrain.kind == 'rocks'
     rolled = on_rocks and task.seed % 4 == 0
@@ -60,11 +63,12 @@ def value(table: list[Row], case: str, quantity: str) -> float | None:
 
 
 def test_each_gait_meets_the_same_piles(tried: Outcome) -> None:
-    piles = [task for task in tried.tried if task.terrain.kind == 'rocks']  # type: ignore[attr-defined]
+    trials = [task for task in tried.tried if isinstance(task, ObstacleTrial)]
+    piles = [task for task in trials if task.terrain.kind == 'rocks']
     assert len(piles) == (len(GAITS) + len(OTHER_FILLS)) * PILES
     for task in piles:
         # What lies flat may sag; what lifts itself needs its torque.
-        assert (task.pitch_effort > 0.0) is isinstance(task.gait, WaveGait)  # type: ignore[attr-defined]
+        assert (task.pitch_effort > 0.0) is isinstance(task.gait, WaveGait)
 
 
 @pytest.mark.parametrize('gait', GAITS)
@@ -81,9 +85,20 @@ def test_other_fillings_are_told_for_the_omega_turn(table: list[Row]) -> None:
         assert value(table, case, 'angle') == pytest.approx(0.5 * HARD)
 
 
+def test_theory_tells_what_patchy_support_alone_does(table: list[Row]) -> None:
+    for bearing in BEARINGS:
+        case = f'omega turn, level patches that bear, {bearing:g} of the ground'
+        mean, deviation = (row for row in table if row.case == case)
+        assert (mean.quantity, mean.quasi_static) == ('angle', 80.0)
+        assert (deviation.quantity, deviation.quasi_static) == (
+            'angle_std',
+            pytest.approx(200.0**0.5),
+        )
+
+
 def test_file_tells_every_trial_but_not_its_motion(tried: Outcome) -> None:
     records = STUDY.records(tried)
-    assert len(records) == len(tried.tried)
+    assert len(records) == len(tried.tried) - len(BEARINGS)
     assert all('poses' not in record for record in records)
 
 

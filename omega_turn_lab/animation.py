@@ -97,6 +97,7 @@ class _Scene:
     PAPER, GRID, INK, FAINT = '#ffffff', '#e4e4e4', '#222222', '#8c8c8c'
     SPINE, MODULE, HEAD, TRAIL = '#3d5266', '#6d8ba6', '#e0702c', '#1f62b0'
     OBSTACLE, GRAIN = '#8f887c', '#d9c9a8'
+    LYING, RIM = '#efefec', '#c8c8c4'  # rocks
 
     def __init__(self, record: RunRecord, robot: Robot, speed: float, ground: GroundView) -> None:
         from PIL import ImageFont
@@ -171,8 +172,9 @@ class _Scene:
                 draw.line(self._pixels(line), fill=self.GRID, width=SUPERSAMPLING)
         for x, y in self._pixels(ground.grains(self._centre - reach, self._centre + reach)):
             draw.ellipse((x - 2, y - 2, x + 2, y + 2), fill=self.GRAIN)
+        fill, rim = (self.LYING, self.RIM) if ground.carries else (self.OBSTACLE, None)
         for outline in ground.obstacles:
-            draw.polygon(self._pixels(outline), fill=self.OBSTACLE)
+            draw.polygon(self._pixels(outline), fill, rim, SUPERSAMPLING)
         self._draw_scale_bar(draw, step)
         self._draw_arrow(draw, self._record.pose[0], self.FAINT)
         return picture
@@ -216,7 +218,7 @@ class _Scene:
         pairs += [(c, self.PAPER) for c in (self.SPINE, self.MODULE, self.HEAD)]
         pairs += [(self.SPINE, self.MODULE), (self.SPINE, self.HEAD)]
         pairs += [(c, self.INK) for c in (self.MODULE, self.HEAD, self.FAINT)]
-        pairs += [(c, self.PAPER) for c in (self.OBSTACLE, self.GRAIN)]
+        pairs += [(c, self.PAPER) for c in (self.OBSTACLE, self.GRAIN, self.LYING, self.RIM)]
         values = [*ImageColor.getrgb(self.GRID)]
         for pair in pairs:
             values += mixed(*pair)

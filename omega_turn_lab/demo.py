@@ -228,9 +228,10 @@ def _watch(observer: Observer, size_deg: float) -> None:
     moved, seen = time.monotonic(), -1.0
     with tqdm(total=size_deg, desc='turning', bar_format=bar_format, mininterval=0.2) as bar:
         while observer.remaining != 0.0:
-            left = abs(math.degrees(observer.remaining or 0.0))
-            bar.n = min(max(size_deg - left, 0.0), size_deg)
-            bar.set_postfix_str(f'{observer.simulated_time:.1f} s simulated', refresh=False)
+            left = math.degrees(observer.remaining or 0.0)
+            bar.n = min(max(size_deg - abs(left), 0.0), size_deg)
+            seconds = observer.simulated_time
+            bar.set_postfix_str(f'{left:+.1f} deg to go, {seconds:.1f} s simulated', refresh=False)
             bar.update(0)
             now, simulated = time.monotonic(), observer.simulated_time
             if simulated != seen:

@@ -24,11 +24,13 @@ class GroundView:
     Attributes:
         title: what a caption calls it, such as ' among pegs 0.3 BL apart'; '' for level ground.
         obstacles: outlines of what stands there [m], each shape (corners, 2).
+        carries: whether the robot lies on them, not between them.
         grainy: whether the ground between them is grains.
     """
 
     title: str = ''
     obstacles: tuple[Array, ...] = ()
+    carries: bool = False
     grainy: bool = False
 
     def grains(self, low: Array, high: Array) -> Array:
@@ -71,7 +73,7 @@ def view_ground(terrain: TerrainConfig, robot: Robot, seed: int) -> GroundView:
         pegs = tuple(peg + circle for peg in peg_positions(terrain, robot, seed))
         return GroundView(f' among pegs {terrain.spacing_bl:g} BL apart', pegs)
     if terrain.kind == 'rocks':
-        return GroundView(' on rocks', _rock_outlines(terrain, robot, seed))
+        return GroundView(' on rocks', _rock_outlines(terrain, robot, seed), carries=True)
     if terrain.kind == 'granular':
         return GroundView(' on grains', grainy=True)
     return LEVEL

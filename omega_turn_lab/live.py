@@ -24,7 +24,7 @@ from omega_turn_lab.run_record import RunRecord
 from omega_turn_ros.errors import OmegaTurnError
 from omega_turn_ros.nodes.health import steady_clock
 from omega_turn_ros.nodes.inbox import Inbox
-from omega_turn_ros.nodes.messages import heading_of
+from omega_turn_ros.nodes.messages import heading_of, uprightness_of
 from omega_turn_ros.nodes.qos import LATCHED, STATE
 from omega_turn_ros.nodes.time import nanoseconds_of
 from omega_turn_ros.robot import Robot
@@ -108,7 +108,7 @@ class Observer(Node):
     def __init__(self, robot: Robot, context: Context | None = None, **options: Any) -> None:
         super().__init__('omega_turn_observer', context=context, **options)
         self._names = list(robot.joint_names)
-        self._odom: list[tuple[int, float, float, float]] = []
+        self._odom: list[tuple[int, float, float, float, float]] = []  # with the way up
         self._positions: dict[int, list[float]] = {}
         self._commands: dict[int, list[float]] = {}
         self._remaining_log: list[tuple[int, float]] = []
@@ -155,8 +155,9 @@ class Observer(Node):
         if len(stamps) < 2:
             raise NodeError('no odom and joint_states were seen')
         pose = np.array([odom[stamp] for stamp in stamps])
+        pose, sides = pose[:, :3], np.copysign(1.0, pose[:, 3:])
         pose[:, 2] = np.unwrap(pose[:, 2])
-        positions = np.array([self._positions[stamp] for stamp in stamps])
+        positions = sides * np.array([self._positions[stamp] for stamp in stamps])
         commands, last = [], self._positions[stamps[0]]
         for stamp in stamps:
             last = self._commands.get(stamp, last)
@@ -182,7 +183,8 @@ class Observer(Node):
         position = message.pose.pose.position
         stamp = nanoseconds_of(message.header.stamp)
         if not self._odom or stamp > self._odom[-1][0]:
-            self._odom.append((stamp, position.x, position.y, heading_of(message)))
+            heading, upright = heading_of(message), uprightness_of(message)
+            self._odom.append((stamp, position.x, position.y, heading, upright))
 
     def _on_states(self, message: JointState) -> None:
         self._positions[nanoseconds_of(message.header.stamp)] = self._ordered(message)

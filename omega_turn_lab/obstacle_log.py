@@ -125,5 +125,10 @@ class TrialLog:
             },
             'time': [round(seen.time, 6) for seen in self._kept],
             'poses': [seen.pose.round(6).tolist() for seen in self._kept],
-            'yaw_angles': [seen.positions[yaw].round(6).tolist() for seen in self._kept],
+            'yaw_angles': [_from_above(seen)[yaw].round(6).tolist() for seen in self._kept],
         }
+
+
+def _from_above(seen: Observation) -> Array:
+    """Joint angles as they look from above, whichever side is up [rad], shape (n_joints,)."""
+    return math.copysign(1.0, math.cos(seen.roll)) * seen.positions

@@ -121,7 +121,7 @@ class ObstacleTrial:
             offsets outside their limits; `deepest_contact`, how far the body presses into
             obstacles [m]; `least_upright`, least cosine of the body's roll; `energy`, see
             `TrialLog`; and the motion: `time` [s], `poses` x [m], y [m], heading [rad],
-            `yaw_angles` [rad].
+            `yaw_angles` [rad] as they look from above.
         """
         from omega_turn_lab.obstacle_log import TrialLog
         from omega_turn_sim_bridge.simulation import Simulation

@@ -42,7 +42,9 @@ STYLE: dict[Any, Any] = {
     'ytick.direction': 'out',
 }
 SNAPSHOTS = 5  # more of a turn in place hide each other
-OBSTACLE_COLOUR, GRAIN_COLOUR = '0.35', '#c9b48a'
+GRAIN_COLOUR = '#c9b48a'
+STANDING: dict[str, Any] = {'facecolor': '0.35', 'zorder': 2.95}  # over bodies, below their ends
+LYING: dict[str, Any] = {'facecolor': '0.93', 'edgecolor': '0.75', 'linewidth': 0.5, 'zorder': 0.4}
 PALE = 0.3  # share of its colour in a body between start and end
 
 
@@ -160,7 +162,8 @@ def _draw_ground(axes: Axes, ground: GroundView) -> None:
     grains = ground.grains(middle - reach, middle + reach)
     dots: dict[str, Any] = {'linestyle': 'none', 'marker': '.', 'ms': 1.1, 'mew': 0, 'zorder': 0.5}
     axes.add_artist(Line2D(*grains.T, color=GRAIN_COLOUR, **dots))
-    obstacles = PolyCollection(ground.obstacles, facecolor=OBSTACLE_COLOUR, zorder=2.95)
+    look = LYING if ground.carries else STANDING
+    obstacles = PolyCollection(ground.obstacles, **look)
     axes.add_collection(obstacles, autolim=False)
 
 

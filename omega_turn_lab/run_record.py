@@ -19,7 +19,8 @@ class RunRecord:
     Attributes:
         time: simulated or robot time, never decreasing [s], shape (T,).
         pose: mean body frame in the world: x [m], y [m], heading [rad, continuous], shape (T, 3).
-        joint_positions: measured, head to tail [rad], shape (T, n_joints).
+        joint_positions: measured, head to tail [rad], shape (T, n_joints); negated while the robot
+            lies on its back, so that they look as from above.
         joint_commands: what the gait asked for, head to tail [rad], shape (T, n_joints).
         remaining: angle still to turn [rad], shape (T,).
     """

@@ -44,9 +44,9 @@ def draw_motion(axes: Axes, trial: ObstacleTrial, result: Result) -> None:
         for polygon in body_polygons(outline, trial.robot.module_width):
             axes.add_patch(Polygon(polygon, facecolor=body, lw=0, zorder=1 + i))
         axes.plot(*outline[0], 'o', color=head, ms=2.2, zorder=1 + i)
-    lies = trial.terrain.kind == 'rocks'
-    look, order = (LYING, 0) if lies else (STANDING, SHAPES + 1)
-    for obstacle in view_ground(trial.terrain, trial.robot, trial.seed).obstacles:
+    ground = view_ground(trial.terrain, trial.robot, trial.seed)
+    look, order = (LYING, 0) if ground.carries else (STANDING, SHAPES + 1)
+    for obstacle in ground.obstacles:
         axes.add_patch(Polygon(obstacle, zorder=order, **look))
     low, high = (f(outlines.reshape(-1, 2), axis=0) for f in (np.min, np.max))
     axes.set_xlim(low[0] - MARGIN, high[0] + MARGIN)

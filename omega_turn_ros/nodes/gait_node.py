@@ -33,17 +33,16 @@ from omega_turn_ros.nodes.messages import (
     text_of_request,
     uprightness_of,
 )
+from omega_turn_ros.nodes.pacing import answer_now
 from omega_turn_ros.nodes.parameters import DECLARE_GIVEN, NodeParameters
 from omega_turn_ros.nodes.qos import COMMAND, REMAINING, REQUEST, STATE, STATE_INPUT
 from omega_turn_ros.nodes.raw_joint_states import RawStateReader
 from omega_turn_ros.nodes.runner import run_node
-from omega_turn_ros.nodes.seldom import SeldomGroup
 from omega_turn_ros.nodes.time import StepTimer, nanoseconds_of
 from omega_turn_ros.robot import load_robot
 
 WAVES = ('forward', 'turning')
 REMAINING_EVERY = 10  # commands between two turn_remaining
-SELDOM = 0.1  # [s] between looks for service calls other than stop
 
 
 class GaitNode(Node):
@@ -51,13 +50,16 @@ class GaitNode(Node):
 
     Args:
         context: rclpy context; None for the default one.
+        paced: whoever made the node calls `tick` each `tick_period`, where it has one.
         options: passed on to `rclpy.node.Node`.
 
     Raises:
         BadInputError: a parameter is refused.
     """
 
-    def __init__(self, context: Context | None = None, **options: Any) -> None:
+    def __init__(
+        self, context: Context | None = None, paced: bool = False, **options: Any
+    ) -> None:
         super().__init__('gait_node', context=context, **DECLARE_GIVEN, **options)
         self._state = ControllerState()
         self._settings = NodeParameters(self, GAIT_PARAMETERS, self._accept, self._apply)
@@ -78,8 +80,10 @@ class GaitNode(Node):
         self._ticks = 0
         self._make_topics()
         self.create_timer(PUBLISH_EVERY, self._publish_health, clock=steady_clock())
-        if not self._lock_step:
-            self.create_timer(self._period, self._on_timer)
+        driven = self._lock_step or self.get_parameter('use_sim_time').value
+        self.tick_period = self._period if paced and not driven else None
+        if not self._lock_step and self.tick_period is None:
+            self.create_timer(self._period, self.tick)
         self._report_remaining()
         gait, feedback = self._controller.gait.name, self._settings['heading_feedback']
         self._health.ready(f'{self._robot.name}, gait {gait}, heading feedback {feedback}')
@@ -109,9 +113,8 @@ class GaitNode(Node):
         self._phases = self.create_publisher(JointState, 'wave_phases', COMMAND)
         self._phase_writer = JointWriter(WAVES)
         self._remaining = self.create_publisher(Float64, 'turn_remaining', REMAINING)
-        stop = self.create_service(Trigger, '~/stop', self._on_stop)
+        self._stop = self.create_service(Trigger, '~/stop', self._on_stop)
         self.create_service(Trigger, '~/reset', self._on_reset)
-        self._seldom = SeldomGroup(self, (stop,), round(SELDOM * self._settings['rate']))
 
     def _accept(self, values: Mapping[str, Any]) -> None:
         limit = make_controller(values, load_robot(values['robot'])).limits.position
@@ -126,6 +129,7 @@ class GaitNode(Node):
         self._controller = make_controller(values, self._robot)
         gait = self._controller.gait
         self._compliant = values['use_compliance'] and gait.gait.complies
+        self._uses_odom = values['heading_feedback'] == 'odom'
         if gait.robot != self._robot.name:
             text = f'gait {gait.name} is calibrated for robot {gait.robot}, not this one'
             self._health.warn('gait', f'{text}: predicted angles are off')
@@ -141,9 +145,10 @@ class GaitNode(Node):
             # In lock step stamps tell what belongs together; the wall clock has no say.
             seen.timeout = 0.0 if values['lock_step'] else values[timeout]
 
-    def _on_timer(self) -> None:
+    def tick(self) -> None:
+        """Read what has come, take one step and publish the command."""
         now = self.get_clock().now()
-        self._seldom.tick()
+        answer_now(self._stop)
         self._read_requests()
         self._read_drive()
         self._read_inputs()
@@ -172,7 +177,7 @@ class GaitNode(Node):
 
     def _missing(self) -> set[str]:
         """Inputs of the present instant that are still to come."""
-        needed = {'odom'} if self._settings['heading_feedback'] == 'odom' else set()
+        needed = {'odom'} if self._uses_odom else set()
         if self._compliant:
             needed.add('wave_amplitudes')
         return {n for n in needed if self._stamps[n] != self._stamps['joint_states']}
@@ -218,7 +223,7 @@ class GaitNode(Node):
                 if self._lock_step:
                     self._last_stamp = Time(sec=reading.seconds, nanosec=reading.nanoseconds)
                 self._states_seen.mark()
-        for message in self._odom.drain():
+        for message in self._odom.drain() if self._uses_odom else ():
             try:
                 heading, upright = heading_of(message), uprightness_of(message)
             except BadInputError as error:
@@ -227,7 +232,7 @@ class GaitNode(Node):
                 self._stamps['odom'] = nanoseconds_of(message.header.stamp)
                 self._absent.discard('odom')
                 self._odom_seen.mark()
-        for message in self._amplitudes.drain():
+        for message in self._amplitudes.drain() if self._compliant else ():
             try:
                 offsets = read_offsets(
                     message, self._wave_reader, self._controller.config.offset_limit
@@ -247,7 +252,7 @@ class GaitNode(Node):
             heading,
             offsets if compliant else (0.0, 0.0),
             effort,
-            upright if self._settings['heading_feedback'] == 'odom' else 1.0,
+            upright if self._uses_odom else 1.0,
         )
 
     def _advance(self, dt: float, stamp: Time) -> None:
@@ -306,7 +311,6 @@ class GaitNode(Node):
         self._report_remaining()
 
     def _publish_health(self) -> None:
-        self._seldom.open()  # simulated time may stand still, and the ticks with it
         self._drop_unstarted()
         state, values = self._state, self._settings.values
         problems = []
@@ -349,4 +353,4 @@ class GaitNode(Node):
 
 def main(args: list[str] | None = None) -> int:
     """Run the gait node until SIGINT or SIGTERM; return the exit code."""
-    return run_node(GaitNode, args)
+    return run_node(lambda: GaitNode(paced=True), args)

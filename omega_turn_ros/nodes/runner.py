@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import re
 import signal
@@ -19,6 +20,7 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
 from omega_turn_ros.errors import OmegaTurnError, RosArgumentsError
+from omega_turn_ros.nodes.pacing import Paced, spin_paced
 
 ENDINGS = {signal.SIGINT, signal.SIGTERM}
 SAME = 1.0  # [s] within which a second signal is the first again: a terminal's and launch's own
@@ -76,7 +78,10 @@ def run_node(make_node: Callable[[], Node], args: Sequence[str] | None = None) -
         ).start()
         node = make_node()
         executor.add_node(node)
+        gc.freeze()  # collections in mid-turn need not look through what start-up made
         # Not spin_until_future_complete, which adds a callback to its future each round.
+        if isinstance(node, Paced) and node.tick_period is not None:
+            spin_paced(node, node.tick_period, executor, ended)
         while not ended.is_set():
             executor.spin_once()
     except ExternalShutdownException:

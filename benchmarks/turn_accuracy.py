@@ -44,6 +44,10 @@ class User:
             self.turned += math.remainder(heading - self.heading, math.tau)
         self.heading = heading
 
+    def is_connected(self) -> bool:
+        heard = self.heading is not None and self.remaining is not None
+        return heard and self.turn.get_subscription_count() > 0
+
     def spin(self) -> None:
         self.executor.spin_once(timeout_sec=0.1)
 
@@ -64,8 +68,7 @@ def measure(degrees: float, feedback: str, speed: float) -> None:
         processes.node('pybullet_bridge', real_time_factor=speed)
         processes.node('gait_node', heading_feedback=feedback, use_sim_time=True)
         processes.node('admittance_node', use_sim_time=True)
-        ready = lambda: user.heading is not None and user.remaining is not None  # noqa: E731
-        wait_for(ready, 60, 'the nodes', user.spin)
+        wait_for(user.is_connected, 60, 'the nodes', user.spin)
         user.turned = 0.0
         user.turn.publish(Float64(data=math.radians(degrees)))
         wait_for(lambda: user.remaining != 0.0, 30, 'acceptance', user.spin)

@@ -22,7 +22,7 @@ def pitch_effort_on(terrain: TerrainConfig, gait: Gait) -> float:
     return FOLLOWING if terrain.kind == 'rocks' and isinstance(gait, WaveGait) else 0.0
 
 
-# Among obstacles a cycle turns by more or less as chance will have it, +-30 deg on rocks (own
+# Among obstacles a cycle turns by more or less as chance will have it, some 20 deg on rocks (own
 # trials), so it takes many to come near, and there is no sense in the last degree.
 PATIENCE = 30  # extra cycles
 NEAR_ENOUGH = math.radians(4.0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -178,7 +179,10 @@ class PyBulletBridge(Node):
         pose.position.x, pose.position.y = x, y
         o = pose.orientation
         o.x, o.y, o.z, o.w = orientation_of(heading, seen.roll)
-        twist.linear.x, twist.linear.y, twist.angular.z = (float(v) for v in seen.twist)
+        vx, vy, turn = (float(v) for v in seen.twist)
+        c, s = math.cos(seen.roll), math.sin(seen.roll)
+        twist.linear.x, twist.linear.y, twist.linear.z = vx, c * vy, -s * vy
+        twist.angular.y, twist.angular.z = s * turn, c * turn  # in the rolled child frame
 
     def _on_reset(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         self._simulation.reset()

@@ -32,7 +32,7 @@ def urdf_from_robot(robot: Robot, solid: str = '') -> str:
     Args:
         robot: the robot.
         solid: what each body collides with besides its feet: '' nothing, enough on level ground;
-            'round' capsules, smooth along upright pegs; 'square' boxes, which lie without rolling.
+            'round' capsules, smooth along upright pegs; 'square' boxes.
 
     Returns:
         URDF text. Link `head`, then `module_1`.. named after the joint in front of each.

@@ -51,9 +51,9 @@ class RockPile:
 def settled_pile(size: float, fill: float, extent: float, seed: int) -> RockPile:
     """Drop rocks side by side into a pen around the origin, then stones into the gaps.
 
-    Each layer lies still before the next falls, and carries it. Stones that come to lie higher
-    than the tops of the rocks are taken away. The physics of the pile runs in a client of its
-    own, so the robot's starts clean.
+    Each layer lies still, or has had its time, before the next falls, and carries it. Stones that
+    come to lie higher than the tops of the rocks are taken away before. The physics of the pile
+    runs in a client of its own, so the robot's starts clean.
 
     Args:
         size: mean diameter of the rocks [m].
@@ -73,7 +73,11 @@ def settled_pile(size: float, fill: float, extent: float, seed: int) -> RockPile
         level = float(np.median([_top(client, *rock) for rock in laid.items()]))
         for _ in range(FILLINGS if fill > 0.0 else 0):
             stones = _lay(client, fill * size, level, extent, rng)
-            laid |= {b: c for b, c in stones.items() if _top(client, b, c) < level}
+            for stone, corners in stones.items():
+                if _top(client, stone, corners) < level:
+                    laid[stone] = corners
+                else:
+                    pybullet.removeBody(stone, physicsClientId=client)
         poses = [pybullet.getBasePositionAndOrientation(b, physicsClientId=client) for b in laid]
     finally:
         pybullet.disconnect(physicsClientId=client)

@@ -375,7 +375,8 @@ class Simulation:
             yaw = math.atan2(2.0 * (qw * qz + qx * qy), 1.0 - 2.0 * (qy * qy + qz * qz))
         self._base_yaw += math.remainder(yaw - self._base_yaw, math.tau)
         heading = self._base_yaw + bend
-        rate = base_rate[2] + float(self._behind @ velocities[self._yaw])
+        # Seen from above, yaw joints of a body on its back turn the other way.
+        rate = base_rate[2] + math.cos(roll) * float(self._behind @ velocities[self._yaw])
         centres = np.array([base] + [s[LINK_COM_POSITION] for s in links])
         rates = np.array([base_velocity] + [s[LINK_COM_VELOCITY] for s in links])
         x, y, _ = self._mass_fractions @ centres

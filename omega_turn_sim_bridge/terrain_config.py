@@ -11,7 +11,7 @@ from omega_turn_ros.mechanics.force_laws import GranularResistance
 from omega_turn_ros.resources import read_config
 
 KINDS = ('flat', 'granular', 'pegboard', 'rocks')
-SMALLEST_STONE = 0.05  # of the pile's extent; smaller ones are thousands
+SMALLEST_STONE = 0.05  # over the pile's extent; smaller ones are thousands
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,14 +59,22 @@ class TerrainConfig:
                 raise BadInputError(f'terrain {field}', value, 'a finite number >= 0')
             if value == 0.0 and field in lengths:
                 raise BadInputError(f'terrain {field}', value, 'a length > 0')
-        smallest = self.rock_size_bl * (self.rock_fill or 1.0)
-        if self.rock_fill > 1.0 or smallest < SMALLEST_STONE * self.extent_bl:
-            expected = f'0, or at most 1 and stones of at least {SMALLEST_STONE:g} extent_bl'
-            raise BadInputError('terrain rock_fill', self.rock_fill, expected)
+        if self.kind == 'rocks':
+            self._check_rocks()
         ratio, largest = self.resistance_ratio, GranularResistance().ratio
         number = isinstance(ratio, (int, float)) and not isinstance(ratio, bool)
         if not number or not 1.0 <= ratio <= largest:
             raise BadInputError('terrain resistance_ratio', ratio, f'a ratio in 1..{largest:.3g}')
+
+    def _check_rocks(self) -> None:
+        """Refuse a pen that holds no rock, or thousands."""
+        size, smallest = self.rock_size_bl, SMALLEST_STONE * self.extent_bl
+        if not smallest <= size <= self.extent_bl:
+            expected = f'{smallest:.3g}..{self.extent_bl:g}, by extent_bl'
+            raise BadInputError('terrain rock_size_bl', size, expected)
+        if self.rock_fill and not smallest <= self.rock_fill * size <= size:
+            expected = f'0, or {smallest / size:.3g}..1, by extent_bl and rock_size_bl'
+            raise BadInputError('terrain rock_fill', self.rock_fill, expected)
 
 
 def load_terrain(name: str) -> TerrainConfig:

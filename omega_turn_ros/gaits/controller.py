@@ -227,7 +227,12 @@ class GaitController:
         if state.goal is not None:
             return False
         pace = self.pace(state)
-        return pace.share > 0.0 and self._player.starts_equally(pace.scale, state.scale)
+        alike = self._player.starts_equally(pace.scale, state.scale)
+        return pace.share > 0.0 and alike and self._stays(state)
+
+    def _stays(self, state: ControllerState) -> bool:
+        """Whether the robot still lies on the side that the cycle is played on."""
+        return self._player.side(state) == state.side
 
     def _next_motion(self, state: ControllerState, dt: float) -> ControllerState:
         """Go from one motion to the next where one has ended."""
@@ -269,8 +274,8 @@ class GaitController:
             return (
                 self._go_on(state, pace.scale, bend) if pace.share else self._move_to_rest(state)
             )
-        state = self._judge_cycle(state)
         rest = state.remaining + bend
+        state = self._judge_cycle(state, rest)
         if abs(rest) <= self._tolerance or state.cycles >= state.budget:
             return self._move_to_rest(state)
         plan = plan_turn(rest, self.gait.calibration, state.ground.planned)
@@ -278,13 +283,13 @@ class GaitController:
 
     def _go_on(self, state: ControllerState, scale: float, bend: float) -> ControllerState:
         """Go from one cycle to the next, through rest where the gait must."""
-        alike = self._player.starts_alike(scale, state.scale) and state.side * state.upright > 0.0
+        alike = self._player.starts_alike(scale, state.scale) and self._stays(state)
         if not self.gait.gait.scales_size and not alike:
             return self._move_to_rest(state)  # and plan again from there
         return self._move_to_start(state, scale, bend)
 
-    def _judge_cycle(self, state: ControllerState) -> ControllerState:
-        """Compare the angle of the cycle with the prediction."""
+    def _judge_cycle(self, state: ControllerState, rest: float) -> ControllerState:
+        """Compare the angle of the cycle with the prediction; `rest` is still to turn [rad]."""
         state = replace(state, cycles=state.cycles + 1)
         predicted = self.gait.calibration.angle_of(state.scale)
         if not self.config.heading_feedback or abs(predicted) < JUDGED_FROM:
@@ -292,14 +297,14 @@ class GaitController:
         measured = state.heading.progress - state.cycle_start
         state = replace(state, jam=state.jam.judged(measured, predicted, self.config.period))
         firm = self.gait.gait.scales_size  # others turn little by less than their least scale
-        ground = state.ground.judged(measured, predicted, state.remaining, firm)
+        ground = state.ground.judged(measured, predicted, rest, firm)
         return replace(state, ground=ground)
 
     def _move_to_start(
         self, state: ControllerState, scale: float, bend_now: float
     ) -> ControllerState:
         """Move along one line in shape space to the start shape at `scale`."""
-        state = replace(state, side=math.copysign(1.0, state.upright))
+        state = replace(state, side=self._player.side(state))
         target = self._player.start(state.side, scale)
         bend = self.gait.calibration.bend_heading_of(scale) - bend_now
         command = self._known(state)

@@ -69,7 +69,7 @@ class Inputs:
         heading: measured heading [rad], any branch; None when there is none or it is stale.
         offsets: wanted offsets of (A_f, A_t) [rad]; (0, 0) when there are none.
         effort: largest |effort| of any joint [N m]; 0 where it is not measured.
-        upright: cosine of the body's roll: 1 lying on its belly, -1 on its back.
+        upright: cosine of the body's tilt: 1 lying on its belly, -1 on its back.
     """
 
     positions: Array | None = None

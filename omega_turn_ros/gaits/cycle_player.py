@@ -24,8 +24,9 @@ ROLLING_TIME = 0.5  # [s] from one side's posture to straight
 class CyclePlayer:
     """Plays cycles of one gait on one robot. Holds constants only.
 
-    A robot on its back is seen from above as its mirror image, so there every joint of the gait
-    is reversed; amplitude offsets, which come from efforts, stay what the joints feel.
+    A robot of yaw and pitch joints on its back is seen from above as its mirror image, so there
+    every joint of the gait is reversed; amplitude offsets, which come from efforts, stay what the
+    joints feel.
 
     Args:
         gait: gait with its calibration.
@@ -87,10 +88,21 @@ class CyclePlayer:
         # A small cycle, such as a correction, must not be outgrown by what its waves yield.
         let_in = gate * min(abs(state.scale), 1.0)
         offsets = (let_in * state.offsets[0], let_in * state.offsets[1])
-        side = _side_now(state, dt)
+        side = self._side_now(state, dt) if share > 0.0 else state.side
         changes = {'turned': turned, 'phase_rate': rate, 'gate': gate, 'side': side}
         target = self._posture(side, turned, state.scale, offsets)
         return changes, target, predicted * state.ground.ratio
+
+    def side(self, state: ControllerState) -> float:
+        """Side to play on: 1 the belly, -1 the back; rocking about the edge changes nothing."""
+        side = math.copysign(1.0, state.side)
+        rolled = self.gait.gait.rolls and side * state.upright < -ROLLED
+        return -side if rolled else side
+
+    def _side_now(self, state: ControllerState, dt: float) -> float:
+        """Go over to the other side's posture, past straight, once the robot has rolled."""
+        side, reach = self.side(state), dt / ROLLING_TIME
+        return min(max(side, state.side - reach), state.side + reach)
 
     def _phase_rate(
         self, state: ControllerState, wanted: float, goes_on: bool, dt: float
@@ -111,12 +123,3 @@ class CyclePlayer:
         forward, turning = offsets
         posture: Array = side * self._played.at(phase, scale, (side * forward, side * turning))
         return posture
-
-
-def _side_now(state: ControllerState, dt: float) -> float:
-    """Go over to the other side's posture, past straight, once the robot has rolled."""
-    side = math.copysign(1.0, state.side)
-    if side * state.upright < -ROLLED:
-        side = -side
-    reach = dt / ROLLING_TIME
-    return min(max(side, state.side - reach), state.side + reach)

@@ -42,6 +42,7 @@ class Gait(ABC):
         scales_size: the scale multiplies every angle, so start postures lie on one line from rest
             and errors of the prediction grow with it. Others go through rest to another scale.
         moves: what it calls the joints it moves.
+        rolls: on its back, every joint reversed, it moves the robot as on its belly.
     """
 
     __slots__ = ()
@@ -49,6 +50,7 @@ class Gait(ABC):
     complies: ClassVar[bool] = False
     scales_size: ClassVar[bool] = False
     moves: ClassVar[str] = 'joints'
+    rolls: ClassVar[bool] = True
 
     def joints_of(self, robot: Robot) -> NDArray[np.intp]:
         """Places of the joints it moves; its calibration counts these, shape (N,)."""

@@ -15,10 +15,9 @@ GROWTH = 1.5  # of the share, each time a cycle has not overshot
 class GroundResponse:
     """What the next cycle is planned by (own derivation).
 
-    On even ground the last measurement is right and the whole rest is planned for. On obstacles
-    what a cycle turns is part chance: one cycle moves the ratio halfway only, on a logarithmic
-    scale, and after an overshoot the next plans for half the share, so corrections shrink where
-    at full share they would throw the robot about as far as they should bring it.
+    Among obstacles what a cycle turns is part chance. So one cycle moves the ratio halfway only,
+    on a logarithmic scale, and after an overshoot the next plans for half the share. Corrections
+    then shrink, where at full share they would throw the robot about as far as they bring it.
 
     Attributes:
         ratio: measured over predicted angle per cycle, in this turn.

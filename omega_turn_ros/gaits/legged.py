@@ -32,7 +32,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -65,6 +65,8 @@ class LeggedGait(Gait):
         sigma: share of w_3 that is constant.
         phi_3: phase of the rest [rad].
     """
+
+    rolls: ClassVar[bool] = False  # on its back legs still swing forward to walk forward
 
     n_pairs: int
     theta_leg: float

@@ -72,6 +72,9 @@ def headings_on_patches(chain: PlanarChain, path: ArrayLike, ground: PatchyGroun
 
     Returns:
         Heading [rad], shape (T, G), 0 at the start.
+
+    Raises:
+        ConvergenceError: a force balance was not solved.
     """
     shapes = np.asarray(path, float)
     pose = np.zeros((ground.count, 3))

@@ -53,6 +53,9 @@ class GaitNode(Node):
         paced: whoever made the node calls `tick` each `tick_period`, where it has one.
         options: passed on to `rclpy.node.Node`.
 
+    Attributes:
+        tick_period: [s]; None where messages, /clock (`use_sim_time` at start) or a timer drive.
+
     Raises:
         BadInputError: a parameter is refused.
     """
@@ -67,6 +70,7 @@ class GaitNode(Node):
         self._health = Health(self)
         self._states_seen, self._odom_seen, self._amplitudes_seen = (Freshness() for _ in range(3))
         self._asked, self._driven = Freshness(), Freshness()
+        self._unread: tuple[Inbox[Any], ...] = ()
         self._apply(self._settings.values)
         self._period = 1.0 / self._settings['rate']
         self._time = StepTimer(2.5 * self._period, self._period)
@@ -106,6 +110,7 @@ class GaitNode(Node):
         )
         self._odom = Inbox(self, Odometry, 'odom', state_qos, on_state)
         self._amplitudes = Inbox(self, JointState, 'wave_amplitudes', state_qos, on_state)
+        self._unread = (self._odom, self._amplitudes)  # where they are not used
         self._stamps = {'joint_states': -1, 'odom': -1, 'wave_amplitudes': -1}
         self._commands = CommandOutput(
             self, self._settings['command_interface'], self._robot.joint_names, self._period
@@ -130,6 +135,8 @@ class GaitNode(Node):
         gait = self._controller.gait
         self._compliant = values['use_compliance'] and gait.gait.complies
         self._uses_odom = values['heading_feedback'] == 'odom'
+        for inbox in self._unread:
+            inbox.drain()  # what waits there may be old
         if gait.robot != self._robot.name:
             text = f'gait {gait.name} is calibrated for robot {gait.robot}, not this one'
             self._health.warn('gait', f'{text}: predicted angles are off')
@@ -324,7 +331,7 @@ class GaitNode(Node):
             problems.append('odom stale: heading predicted')
             if state.goal is not None:
                 self._health.warn('odom', 'no odom: heading is predicted')
-        if state.side < 0.0:
+        if state.upright < 0.0:
             problems.append(ON_BACK)
         if state.jam.jammed and state.goal is not None:
             problems.append(JAMMED)

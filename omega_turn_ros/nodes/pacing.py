@@ -45,9 +45,13 @@ def spin_paced(
         now = time.monotonic()
         if now >= due:
             node.tick()
-            due = max(due + period, now)
+            due += period
+            late = time.monotonic()
+            if due <= late:
+                due = late + period
         if now + together >= look:
-            executor.spin_once(timeout_sec=0.0)
+            for _ in range(2):  # the second ends the round the first began
+                executor.spin_once(timeout_sec=0.0)
             look = now + LOOK_EVERY
         time.sleep(max(min(due, look) - time.monotonic(), 0.0))
 

@@ -135,6 +135,23 @@ def test_small_turn_teaches_nothing_about_large_ones(make_rig: MakeRig) -> None:
     assert rig.state.ground.usual == 1.0
 
 
+@pytest.mark.parametrize('short', [0.2, -0.2])
+def test_overshoot_is_told_from_what_is_left_once_the_body_is_straight(
+    make_rig: MakeRig, bent: LibraryGait, short: float
+) -> None:
+    """A gait that begins bent has, at the end of its cycle, still to unbend."""
+    rig = make_rig(gait=bent, heading_feedback=True)
+    table = bent.calibration
+    assert abs(table.bend_heading_of(1.0)) > abs(short)
+    rig.ask(table.largest_angle)
+    rig.run_until(lambda state: state.mode is Mode.CYCLING and state.turned > 0.3)
+    goal = rig.state.goal
+    assert goal is not None
+    rig.state = replace(rig.state, goal=goal + short)
+    rig.run_until(lambda state: state.cycles == 1)
+    assert (rig.state.ground.share < 1.0) is (short < 0.0)
+
+
 def test_heading_is_judged_once_the_robot_has_settled(make_rig: MakeRig) -> None:
     rig = make_rig(heading_feedback=True)
     rig.ask(0.5)

@@ -54,9 +54,9 @@ def test_ticks_come_no_sooner_than_their_period_in_the_mean(
 def test_missed_ticks_are_not_made_up_for(executor: SingleThreadedExecutor) -> None:
     ticker = Ticker(4, slow=True)
     spin_paced(ticker, PERIOD, executor, ticker.ended)
-    first, second, third, fourth = ticker.times
+    first, second, third, _ = ticker.times
     assert second - first >= 5.0 * PERIOD
-    assert fourth - third >= 0.5 * PERIOD
+    assert third - second >= 0.3 * PERIOD
 
 
 def test_what_else_the_node_does_gets_its_turn(graph: Graph) -> None:
@@ -118,6 +118,7 @@ def test_gait_node_that_nobody_ticks_has_a_timer(graph: Graph) -> None:
 
 def test_stop_is_answered_by_the_next_tick(graph: Graph) -> None:
     node = graph.add(_paced_node)
+    graph.executor.remove_node(node)  # only its ticks may answer
     user = User(graph)
     client = user.node.create_client(Trigger, 'gait_node/stop')
     graph.spin_until(client.service_is_ready, 'the service')

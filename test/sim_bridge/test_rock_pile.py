@@ -90,8 +90,14 @@ def test_heading_is_the_same_whichever_side_the_robot_lies_on(
     pybullet.resetBasePositionAndOrientation(
         on_rocks.body, (0.0, 0.0, 1.0), turn, physicsClientId=on_rocks.client
     )
-    for joint in range(on_rocks.robot.n_joints):
-        pybullet.resetJointState(on_rocks.body, joint, 0.0, 0.0, physicsClientId=on_rocks.client)
+    yaw = np.zeros(on_rocks.robot.n_joints)
+    yaw[on_rocks.robot.yaw_indices[3]] = 1.0  # [rad/s]
+    for joint, rate in enumerate(yaw):
+        pybullet.resetJointState(on_rocks.body, joint, 0.0, rate, physicsClientId=on_rocks.client)
+    pybullet.resetBaseVelocity(on_rocks.body, [0] * 3, [0] * 3, physicsClientId=on_rocks.client)
     seen = on_rocks.observe()
+    behind = np.arange(17) > on_rocks.robot.yaw_indices[3]
+    share = on_rocks.robot.body_masses[behind].sum() / on_rocks.robot.body_masses.sum()
+    assert seen.twist[2] == pytest.approx(math.cos(roll) * share, abs=1e-6)
     assert math.remainder(seen.pose[2] - 2.0, math.tau) == pytest.approx(0.0, abs=1e-6)
     assert math.cos(seen.roll - roll) == pytest.approx(1.0, abs=1e-9)

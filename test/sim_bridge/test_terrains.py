@@ -44,6 +44,8 @@ def test_every_kind_of_ground_is_shipped_under_its_name() -> None:
         ('kind: rocks\nrock_size_bl: .nan', 'terrain rock_size_bl'),
         ('kind: rocks\nrock_fill: 0.05', 'terrain rock_fill'),
         ('kind: rocks\nrock_fill: 1.5', 'terrain rock_fill'),
+        ('kind: rocks\nrock_fill: 0\nrock_size_bl: 0.01', 'terrain rock_size_bl'),
+        ('kind: rocks\nextent_bl: 0.1', 'terrain rock_size_bl'),
         ('kind: granular\nresistance_ratio: 0.9', 'terrain resistance_ratio'),
         ('kind: granular\nresistance_ratio: loose', 'terrain resistance_ratio'),
         ('kind: rocks\nextent_bl: true', 'terrain extent_bl'),
@@ -54,6 +56,10 @@ def test_bad_field_of_a_ground_is_refused_by_name(text: str, field: str, tmp_pat
     path.write_text(text)
     with pytest.raises(BadInputError, match=f'^{field}: got'):
         load_terrain(str(path))
+
+
+def test_what_rocks_need_does_not_bind_other_grounds() -> None:
+    assert TerrainConfig('pegboard', extent_bl=10.0).extent_bl == 10.0
 
 
 @pytest.mark.parametrize('spacing', SPACINGS)
